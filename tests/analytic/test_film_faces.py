@@ -5,7 +5,7 @@ import pytest
 
 from underfoot.film.face_operator import Conductance, Faces, Inlet, Upwinding, face_operator
 from underfoot.film.operator import Pattern, series_conductance
-from underfoot.film.pressure import _finer, _halved
+from underfoot.film.pressure import _finer, _halve_field
 
 COUNT, VISCOSITY, SPACING = 6, 0.1, 1e-3
 """Two rows of three cells."""
@@ -79,7 +79,7 @@ def test_a_pair_of_blocks_stands_side_by_side():
 
 def test_a_coarse_field_holds_the_means_of_its_cells():
     field = np.arange(15.0).reshape(5, 3) ** 2
-    along, both = _halved(field, (0,)), _halved(field, (0, 1))
+    along, both = _halve_field(field, (0,)), _halve_field(field, (0, 1))
     halves = (field[0] + field[1]) / 2, (field[2] + field[3]) / 2, field[4]
     assert along == pytest.approx(np.array(halves))
     assert both == pytest.approx(np.column_stack([(along[:, 0] + along[:, 1]) / 2, along[:, 2]]))

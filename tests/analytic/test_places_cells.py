@@ -141,7 +141,7 @@ def test_settings_that_nobody_read_in_the_source_are_counted():
 @pytest.mark.parametrize(("before", "after"), [(0.1, 0.05), (0.1, 0.2)])
 def test_the_mean_ratio_of_slips_lies_between_its_ends(before, after):
     spread = np.exp(0.1 * np.random.default_rng(3).normal(size=4000))
-    low, middle, high = choice._left(after * spread, np.full(4000, before))
+    low, middle, high = choice._slip_ratio(after * spread, np.full(4000, before))
     assert middle == pytest.approx(after / before, rel=0.02)
     assert low == pytest.approx(after / before * np.exp(-0.196), rel=0.02)
     assert high == pytest.approx(after / before * np.exp(0.196), rel=0.02)

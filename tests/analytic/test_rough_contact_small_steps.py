@@ -8,7 +8,7 @@ import pytest
 
 from underfoot.core import InputError
 from underfoot.rough_contact import contact_table
-from underfoot.rough_contact._kernels.complementarity import _clipped
+from underfoot.rough_contact._kernels.complementarity import _clip_pressure
 from underfoot.rough_contact._kernels.periodic import boundary_length
 from underfoot.rough_contact.flow_factor import FlowFactors, _cut_components, flow_factors
 from underfoot.rough_contact.greenwood_williamson_1966 import (
@@ -18,7 +18,7 @@ from underfoot.rough_contact.greenwood_williamson_1966 import (
 from underfoot.rough_contact.persson import FRICTION_GAMMA, persson_growth, yang_persson_mean_gap
 from underfoot.rough_contact.pressure_gap_law import persson_law
 from underfoot.rough_contact.sliding_input import loss_reason
-from underfoot.rough_contact.steady import _done
+from underfoot.rough_contact.steady import _fraction_done
 from underfoot.surface import SpectralMoments
 
 
@@ -85,7 +85,7 @@ def test_a_search_that_ends_early_tells_how_deep_nodes_lie_in_each_other(outside
     gap = np.array([1.0, 3.0, 5.0, outside])
     operators = SimpleNamespace(xp=np, exact_displacement=lambda pressure: gap.copy())
     pressure = np.array([1.0, 1.0, 0.0, -1.0])
-    p, found, told = _clipped(cast(Any, operators), pressure, np.zeros(4), 4.0, True)
+    p, found, told = _clip_pressure(cast(Any, operators), pressure, np.zeros(4), 4.0, True)
     np.testing.assert_allclose(p, [2, 2, 0, 0])
     np.testing.assert_allclose(found, gap - 2)
     assert told == pytest.approx(error)
@@ -146,7 +146,7 @@ def test_no_gap_lets_nothing_through_and_rests_on_no_flow():
     [(10.0, 0.0), (1.0, 0.0), (1e-2, 1 / 3), (1e-3, 0.5), (1e-6, 1.0), (1e-9, 1.0), (0.0, 1.0)],
 )
 def test_a_search_is_done_by_the_powers_of_ten_that_are_behind_it(error, done):
-    assert _done(error, 1e-6) == pytest.approx(done)
+    assert _fraction_done(error, 1e-6) == pytest.approx(done)
 
 
 @pytest.mark.parametrize(
@@ -210,7 +210,7 @@ def test_a_node_of_a_table_needs_its_contact_and_its_friction(monkeypatch, bad):
 
     monkeypatch.setattr(contact_table, "_averages", lambda *_: [1.0, 2.0, 3.0, 4.0, 5.0])
     part = SimpleNamespace(pressure=np.array([1e5]))
-    column = contact_table._averaged(
+    column = contact_table._average_part(
         cast(Any, part), iter([cast(Any, solved(0, 1e-3))]), iter([cast(Any, solved(1, 2e-3))])
     )
     values = np.array([column[name][0] for name in contact_table.QUANTITIES])

@@ -4,6 +4,7 @@ import json
 import signal
 import subprocess
 import sys
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -24,6 +25,14 @@ def finished(tmp_path_factory):
     listed = {"PYTHONPROFILEIMPORTTIME": "1"}  # on stderr, what the process imports
     done = process("run", DRY, "--quick", *FAST, "--out", "result", folder=folder, **listed)
     return folder, done
+
+
+def test_the_package_runs_where_the_command_is_not_on_the_path(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-m", "underfoot", "--version"],
+        cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout.strip()) == (0, f"underfoot {version('underfoot')}")
 
 
 def test_help_imports_nothing_heavy(tmp_path):

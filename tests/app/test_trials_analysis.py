@@ -91,8 +91,10 @@ def test_an_interrupted_analysis_goes_on(tester, tmp_path, monkeypatch):
     kept = len(list(store.glob("*.json")))
     assert 3 <= kept < 9
     made = []
-    original = folder_module._analysed
-    monkeypatch.setattr(folder_module, "_analysed", lambda *job: made.append(job) or original(*job))
+    original = folder_module._analyse_file
+    monkeypatch.setattr(
+        folder_module, "_analyse_file", lambda *job: made.append(job) or original(*job)
+    )
     analysis = analyse_folder(tester, protocol("report_g4"), store=store, processes=1)
     assert len(analysis.files) == 9
     assert len(made) == 9 - kept

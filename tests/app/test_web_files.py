@@ -19,7 +19,7 @@ pytest.importorskip("nicegui")
 from underfoot.app import work, work_sole
 from underfoot.app.pages import sole_file
 from underfoot.app.project import Project
-from underfoot.app.uploads import received
+from underfoot.app.uploads import receive_file
 from underfoot.case import Case
 from underfoot.core import InputError, silent
 from underfoot.report.outsole import case_text, inspect_outsole
@@ -72,9 +72,9 @@ def test_a_full_disk_leaves_no_part_of_a_file(tmp_path, monkeypatch):
 
     monkeypatch.setattr(Path, "open", limited)
     with pytest.raises(OSError, match=r"No space left.*soles.big\.stl"):
-        asyncio.run(received(project, "soles/big.stl", pieces(bytes(9000))))
+        asyncio.run(receive_file(project, "soles/big.stl", pieces(bytes(9000))))
     assert list((project.folder / "soles").iterdir()) == []
-    asyncio.run(received(project, "soles/small.stl", pieces(bytes(3000))))
+    asyncio.run(receive_file(project, "soles/small.stl", pieces(bytes(3000))))
     assert [path.name for path in (project.folder / "soles").iterdir()] == ["small.stl"]
 
 
@@ -82,7 +82,7 @@ def test_names_of_two_hundred_letters_are_refused_before_they_are_written(tmp_pa
     project = Project(tmp_path / "project")
     long = "a" * 200
     with pytest.raises(InputError, match="can't be the name of a file on every system"):
-        asyncio.run(received(project, f"soles/{long}.stl", pieces(b"x")))
+        asyncio.run(receive_file(project, f"soles/{long}.stl", pieces(b"x")))
     with pytest.raises(InputError, match="is no name"):
         project.add(long, "")
     assert len(project.free_name(long)) <= 60

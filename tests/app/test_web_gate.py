@@ -8,7 +8,7 @@ pytest.importorskip("nicegui")
 
 from underfoot.app.gate import Gate, own_name
 from underfoot.app.project import Project
-from underfoot.app.uploads import received, revisions, upload_path
+from underfoot.app.uploads import receive_file, revisions, upload_path
 from underfoot.core import InputError
 
 TOKEN, PORT = "t" * 40, 8642
@@ -118,14 +118,14 @@ async def stream(*chunks):
 
 def test_files_arrive_whole_or_not_at_all(tmp_path, monkeypatch):
     project = Project(tmp_path)
-    path = asyncio.run(received(project, "soles/heel.stl", stream(b"ab", b"c")))
+    path = asyncio.run(receive_file(project, "soles/heel.stl", stream(b"ab", b"c")))
     assert path == tmp_path / "soles" / "heel.stl"
     assert path.read_bytes() == b"abc"
     monkeypatch.setattr("underfoot.app.uploads.MOST_BYTES", 4)
     with pytest.raises(InputError, match="Allowed: at most"):
-        asyncio.run(received(project, "soles/heel.stl", stream(b"abc", b"def")))
+        asyncio.run(receive_file(project, "soles/heel.stl", stream(b"abc", b"def")))
     with pytest.raises(InputError, match="empty"):
-        asyncio.run(received(project, "soles/heel.stl", stream()))
+        asyncio.run(receive_file(project, "soles/heel.stl", stream()))
     assert [p.name for p in (tmp_path / "soles").iterdir()] == ["heel.stl"]
     assert path.read_bytes() == b"abc"
 
@@ -134,7 +134,7 @@ def test_a_file_of_a_taken_name_is_its_next_revision(tmp_path):
     project = Project(tmp_path)
 
     def dropped(*chunks):
-        return asyncio.run(received(project, "soles/heel.stl", stream(*chunks)))
+        return asyncio.run(receive_file(project, "soles/heel.stl", stream(*chunks)))
 
     paths = [dropped(b"%d" % number) for number in range(20)]
     assert dropped(b"3") == paths[3]  # of the same content there is one file
@@ -142,7 +142,7 @@ def test_a_file_of_a_taken_name_is_its_next_revision(tmp_path):
     assert paths[:2] == [tmp_path / "soles" / "heel.stl", tmp_path / "soles/heel, revision 2.stl"]
     assert revisions(paths[7]) == paths
     assert len(list((tmp_path / "soles").iterdir())) == 20
-    other = asyncio.run(received(project, "soles/heel, revision 4.stl", stream(b"new")))
+    other = asyncio.run(receive_file(project, "soles/heel, revision 4.stl", stream(b"new")))
     assert other.name == "heel, revision 21.stl"
 
 

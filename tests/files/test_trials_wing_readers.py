@@ -115,6 +115,15 @@ def test_mvnx_turns_the_points_of_the_foot(tmp_path):
     heel = trial.markers["Right HeelFoot"].positions
     assert heel.shape == (50, 3)
     assert heel[0] == pytest.approx([0.02, 2.1, 0.05])
+    for right, wrong, what in (
+        ("0.1 0 -0.05", "0.1 0 -0.05 1", "pos_b of a point of RightFoot is not 3 numbers"),
+        ("0.1 0 -0.05", "0.1 0 none", "pos_b of a point of RightFoot is not 3 numbers"),
+        ("<position>0 0 1 ", "<position>0 0 ", "position of a frame is not 6 numbers"),
+        ("<orientation>1 0", "<orientation>1 ?", "orientation of a frame is not 8 numbers"),
+    ):
+        (tmp_path / "damaged.mvnx").write_text(text.replace(right, wrong))
+        with pytest.raises(DataError, match=f"damaged: {what}"):
+            read_trial(tmp_path / "damaged.mvnx")
     (tmp_path / "cut.mvnx").write_text(text[:-60])
     with pytest.raises(DataError, match="not valid XML"):
         read_trial(tmp_path / "cut.mvnx")
@@ -203,6 +212,14 @@ def test_amti_bsf(tmp_path):
     (tmp_path / "cut.bsf").write_bytes(bsf(samples=60, claimed=100))
     with pytest.raises(DataError, match="truncated"):
         read_trial(tmp_path / "cut.bsf")
+
+
+@pytest.mark.parametrize("last", [[1.0, 2.0], [1.0, 2.0, "none"], 7.0, {"x": 1.0}])
+def test_json_with_a_damaged_point_names_it(tmp_path, last):
+    path = tmp_path / "points.json"
+    path.write_text(json.dumps({"fps": 100, "markers": {"LHeel": [[0.0, 0.1, 0.2]] * 20 + [last]}}))
+    with pytest.raises(DataError, match="LHeel has no three coordinates a frame"):
+        read_trial(path)
 
 
 def test_json_of_gait_events(tmp_path):

@@ -215,6 +215,8 @@ def test_bounds_of_a_share_are_wilsons():
             distance = (hits / count - bound) ** 2
             exact = 1.959963984540054**2 * bound * (1.0 - bound) / count
             assert distance == pytest.approx(exact, abs=1e-12)
+    for count in range(2, 100):  # none and all leave no rounding at their end
+        assert (_wilson(0, count)[0], _wilson(count, count)[1]) == (0.0, 1.0)
     assert all(np.isnan(_wilson(1, 1)))
 
 

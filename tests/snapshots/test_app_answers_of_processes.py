@@ -237,7 +237,7 @@ def test_previews_as_the_change_of_a_run(file_regression):
         }
         return run_preview.of_run(solved, seen, whole)
 
-    moved = run_preview._moved
+    moved = run_preview._move_number
     held(
         file_regression,
         {
@@ -382,7 +382,7 @@ def test_the_queue_and_its_file(file_regression, tmp_path, monkeypatch):
         [other.tasks[n].fraction for n in (70, 69, 68) if n in other.tasks],
     ]
     told["of next"] = len(JobQueue(tmp_path).tasks)
-    told["moved"] = jobs._moved(
+    told["moved"] = jobs._move_paths(
         {"a": [str(tmp_path), f"{tmp_path}/b", f"{tmp_path}c", 3]}, str(tmp_path), "X"
     )
     held(file_regression, made.placeless(told, tmp_path))
@@ -420,7 +420,7 @@ def test_files_that_come(file_regression, tmp_path, monkeypatch):
 
     def come(place, *parts):
         return (
-            asyncio.run(uploads.received(project, place, stream(*parts)))
+            asyncio.run(uploads.receive_file(project, place, stream(*parts)))
             .relative_to(tmp_path)
             .as_posix()
         )

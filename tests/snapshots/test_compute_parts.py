@@ -45,7 +45,7 @@ from underfoot.compute.position_draws import (
     log_film_odds,
 )
 from underfoot.compute.positions import (
-    _reduced,
+    _reduce_periods,
     case_places,
     first_share,
     further_angles,
@@ -140,7 +140,7 @@ def test_places_of_a_run(file_regression):
     # a period that points back is the same pattern as one that points ahead
     for ways in ((1, 1), (-1, 1), (1, -1), (-1, -1)):
         turned = np.array([[0.01, 0.0], [0.0, 0.02]]) * np.array(ways)[:, None]
-        np.testing.assert_allclose(_reduced(turned), [[0.01, 0.0], [0.0, 0.02]])
+        np.testing.assert_allclose(_reduce_periods(turned), [[0.01, 0.0], [0.0, 0.02]])
 
 
 def rows(these: Iterable[TreadPlace]) -> list[str]:

@@ -14,6 +14,7 @@ import pytest
 
 from snapshot import held, refusal
 from underfoot.core import (
+    InputError,
     checks,
     device,
     errors,
@@ -850,6 +851,10 @@ def test_files_and_fields(file_regression, monkeypatch):
     assert checksum(Path("deep/c.txt")).startswith("2e7d2c03")
     Path("x.toml").write_text("a = 1.5\n")
     assert read_toml(Path("x.toml")) == {"a": 1.5}
+    Path("marked.toml").write_text("a = 1.5", encoding="utf-8-sig")
+    assert read_toml(Path("marked.toml")) == {"a": 1.5}
+    with pytest.raises(InputError, match=r'no file marked\.tml. Did you mean "marked.toml"'):
+        read_toml(Path("marked.tml"))
     Path("x.toml").write_text("a = \n")
     answers["toml"] = _tried(read_toml, Path("x.toml")).partition(" (")[0]
     made = fields.labelled_fields(

@@ -28,7 +28,7 @@ from underfoot.explore.status import StudyStatus
 from underfoot.explore.store import Store
 from underfoot.explore.study import Study
 from underfoot.explore.study_file import read_plan
-from underfoot.explore.sweeps import _written
+from underfoot.explore.sweeps import _file_value
 
 
 class Script:
@@ -525,7 +525,7 @@ def test_small_answers(file_regression, tmp_path):
         except Exception as error:  # how it is refused is held too
             said[name] = f"{type(error).__name__}: {error}"
     said["rows"] = JointDraws(("a",), np.arange(10.0)[:, None]).rows(4)
-    said["written"] = [_written(*one) for one in (
+    said["written"] = [_file_value(*one) for one in (
         ("vary", "motion.speed", {"from": 0.1, "to": 1.0, "log": True, "steps": 3}),
         ("vary", "motion.speed", (0.1, 1.0, 4)), ("vary", "wear", [0.0, 1e-3]),
         ("conditions", "wear", [0.0, 1e-3]), ("uncertain", "motion.speed",

@@ -37,7 +37,7 @@ from underfoot.film.patir_cheng_1978 import (
     patir_cheng_pressure_factors,
 )
 from underfoot.film.patir_cheng_1979 import patir_cheng_shear_factor, patir_cheng_shear_flow
-from underfoot.film.pressure import Film, _finer, _halved, film_history, film_pressure
+from underfoot.film.pressure import Film, _finer, _halve_field, film_history, film_pressure
 from underfoot.film.regimes import (
     compare_regimes,
     fluid_load_share,
@@ -200,7 +200,7 @@ def test_films_between_walls(file_regression):
     said["begins full"] = whole
     rng = np.random.default_rng(5)
     field = rng.random((5, 6))
-    said["coarse"] = [_halved(field, axes) for axes in ((0,), (1,), (0, 1), ())]
+    said["coarse"] = [_halve_field(field, axes) for axes in ((0,), (1,), (0, 1), ())]
     said["fine"] = [_finer(field, shape) for shape in ((9, 12), (10, 6), (5, 11))]
     held(file_regression, said)
 

@@ -474,16 +474,17 @@ def test_numbers_of_choices(file_regression):
             float(choice.slip_share(new["hall", "glycerol_90pct"].acof, r, sd, slope, draws).mean())
             for r, sd, slope in ((0.2, 0.03, 0.0), (0.3, 0.03, 0.0), (0.2, 0.1, 0.1))
         ],
-        "left": [choice._left(after, today), choice._left(today, today),
-                 choice._left(np.zeros(3), np.zeros(3)), choice._left(np.zeros(3), np.ones(3))],
+        "left": [choice._slip_ratio(after, today), choice._slip_ratio(today, today),
+                 choice._slip_ratio(np.zeros(3), np.zeros(3)),
+                 choice._slip_ratio(np.zeros(3), np.ones(3))],
         "lever": choice._lever("worn", after, today),
         "even": choice._lever("same", today, today),
         "replaced": [
-            str(choice._replaced(shoe, states, rate, told, draws))
+            str(choice._replacement_time(shoe, states, rate, told, draws))
             for shoe, rate in ((old, None), (old, after), (old, today * 1.01), (ruled, after),
                                (ruled, today), (dataclasses.replace(old, months=None), after))
         ],
-        "reported": [str(choice._reported(where, after, part)) for where, part in (
+        "reported": [str(choice._reported_slips(where, after, part)) for where, part in (
             (told, today), (told, after), (told, 1e-4 * today), (told, 1e4 * today),
             (place_of(_table()), today))],
         "ratios": [str(choice._ratio(x)) for x in (0.0099, 0.01, 0.5, 99.6, 100.0, 100.1)],

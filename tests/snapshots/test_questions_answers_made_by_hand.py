@@ -356,7 +356,7 @@ def test_comparisons(file_regression):
         [TREADED, TREADED.replace({"motion.speed": "0.1 m/s"})]
     )
     told["none"] = comparison.case_differences([TREADED, TREADED])
-    told["shortened"] = [comparison._shortened(text) for text in ("a" * 64, "b", "/x/y.stl")]
+    told["shortened"] = [comparison._shorten_cell(text) for text in ("a" * 64, "b", "/x/y.stl")]
     held(file_regression, told)
 
 
@@ -401,10 +401,10 @@ def test_methods(file_regression):
         told[f"{name} window"] = method._window(entry)
         found = []
         for condition, floor, fluid in method._conditions(entry):
-            tested, settings = method._prepared(TREADED, entry, floor, fluid, ())
+            tested, settings = method._prepare_case(TREADED, entry, floor, fluid, ())
             found.append([condition, tested.motion.speed, tested.motion.shoe_angle, settings])
         told[name] = found
-        kept = method._prepared(
+        kept = method._prepare_case(
             TREADED, entry, *method._conditions(entry)[0][1:], ("speed", "floor")
         )
         told[f"{name} kept"] = kept[1]

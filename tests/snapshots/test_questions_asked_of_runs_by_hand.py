@@ -349,7 +349,7 @@ def test_effects_of_changes(file_regression, monkeypatch):
     walking = effects.change_effects(PAD, present, changes[4:6])
     told["walking"] = [one.number("slip_probability") for one in walking]
     monkeypatch.undo()
-    told["seen"] = effects._continued(cast(Any, march), changes[3], True)
+    told["seen"] = effects._continue_march(cast(Any, march), changes[3], True)
     held(file_regression, told)
 
 
@@ -425,7 +425,7 @@ def test_series_of_wear_of_made_up_runs(file_regression, monkeypatch):
     told["trends"] = wear.trends(one)
     told["asked"] = asked
     deep = PAD.replace({"shoe.wear.depth": "0.5 mm"})
-    told["worn"] = wear._replaced(deep), wear._extent(PAD)
+    told["worn"] = wear._replaced_wear_note(deep), wear._extent(PAD)
     told["refused"] = [
         refusal(wear.wear_series, PAD, mode="odd"), refusal(wear.wear_series, PAD, steps=1),
         refusal(wear.wear_series, made.CASE), refusal(wear.wear_series, PAD, limit=0.0),

@@ -19,7 +19,7 @@ from underfoot.report.light_mesh import light_mesh, spacing_for
 from underfoot.report.quantities import quantities
 from underfoot.report.sole_export import WRITERS, export_result
 from underfoot.report.sole_mesh import sole_mesh
-from underfoot.report.solver_input import _rows, _wrapped, forces_on_nodes, with_middle_nodes
+from underfoot.report.solver_input import _rows, _wrap_numbers, forces_on_nodes, with_middle_nodes
 from underfoot.report.surface_mesh import surface_mesh
 from underfoot.report.thumbnail import _runs
 from underfoot.report.viewer import scene_section, viewer_scene
@@ -284,7 +284,7 @@ def test_lines_of_a_solver(file_regression):
             "nodes": nodes, "prisms": prisms, "land": land, "forces": forces,
             "inside alone": forces_on_nodes(nodes, land, x[:4], y[:3], load[:4, :3]),
             "rows": list(_rows(np.arange(1, 3), nodes[:2] / 3)),
-            "wrapped": _wrapped(list(range(35))),
+            "wrapped": _wrap_numbers(list(range(35))),
             "runs": _runs(np.array([[0, 1, 1, 0], [1, 0, 0, 1]], bool)),
         },
     )  # fmt: skip

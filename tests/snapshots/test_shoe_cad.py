@@ -142,7 +142,7 @@ def test_bricks_of_cad_files(file_regression, tmp_path):
     answers["empty"] = str(pickle.loads((tmp_path / "answer").read_bytes()))
     wire = occ.Segment(occ.Pnt(0, 0, 0), occ.Pnt(100, 0, 0))
     wire.WriteBrep(str(tmp_path / "wire.brep"), True, True, 3, True)
-    answers["wire"] = refusal(cad._meshed, tmp_path / "wire.brep", "BREP", "mm")
+    answers["wire"] = refusal(cad._mesh_solid, tmp_path / "wire.brep", "BREP", "mm")
     held(file_regression, answers)
 
 
@@ -170,17 +170,17 @@ def test_what_is_drawn_stands_in_where_a_mesh_fails(file_regression, monkeypatch
             return triangles[: int(share * len(triangles))], bodies[: int(share * len(triangles))]
 
         monkeypatch.setattr(cad, "_corners", fewer)
-        made = cad._meshed(path, "STEP", "auto")
+        made = cad._mesh_solid(path, "STEP", "auto")
         assert np.unique(made.body).tolist() == [0, 1]
         assert (len(made.triangles) == 24) == (name != "little lost")
         answers[name] = made.remarks
     monkeypatch.setattr(cad, "_drawing_triangles", lambda *_: (drawn[:4] / 10, body[:4]))
-    half = cad._meshed(path, "STEP", "auto")
+    half = cad._mesh_solid(path, "STEP", "auto")
     assert re.match(r"4\d\.\d% of the area", str(half.remarks[1]))
     assert len(half.remarks) == 2
     monkeypatch.setattr(cad, "_corners", lambda *_: 1 / 0)
     monkeypatch.setattr(cad, "_drawing_triangles", lambda *_: (drawn[:0], body[:0]))
-    answers["nothing"] = refusal(cad._meshed, path, "STEP", "auto").replace(str(path), "a.step")
+    answers["nothing"] = refusal(cad._mesh_solid, path, "STEP", "auto").replace(str(path), "a.step")
     held(file_regression, answers)
 
 

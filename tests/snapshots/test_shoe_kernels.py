@@ -19,7 +19,7 @@ from underfoot.shoe._kernels.regions import (
     distance_to,
     distance_within,
     draining,
-    grown,
+    grow_mask,
     nearest_true,
     pieces,
     rim,
@@ -47,7 +47,8 @@ def test_regions(file_regression, name):
     height = 0.3 * i + 0.01 * (j - 7) ** 2 + np.where(mask, 0.0, 5.0)
     answers = {
         "pieces": pieces(mask), "diagonal": pieces(mask, diagonal=True),
-        "grown": (grown(mask, 1), grown(mask, 3)), "shrunk": (shrunk(mask, 1), shrunk(mask, 2)),
+        "grown": (grow_mask(mask, 1), grow_mask(mask, 3)),
+        "shrunk": (shrunk(mask, 1), shrunk(mask, 2)),
         "holes": without_holes(mask), "rim": (rim(mask), rim(mask, 2)),
         "specks": [without_specks(mask, n) for n in (1, 2, 17)],
         "within": distance_within(mask), "draining": draining(mask | (j > 5), ~mask & (j > 5)),

@@ -47,7 +47,7 @@ from underfoot.sole_contact.cost import Cost, megabytes, refuse_too_large, solut
 from underfoot.sole_contact.edge_peak import overloaded_share, peak_pressure
 from underfoot.sole_contact.gmres import krylov_solution
 from underfoot.sole_contact.lug_edges import EdgedLaw, gap_table, let_in, lug_edges, lug_friction
-from underfoot.sole_contact.march import _calmed
+from underfoot.sole_contact.march import _calm_start
 from underfoot.sole_contact.motion_history import MotionHistory, solve_history
 from underfoot.sole_contact.newton import _cycling, _hopeless, _step_share, _stuck
 from underfoot.sole_contact.preconditioner import pole_fit
@@ -508,7 +508,7 @@ def test_steps_that_swing_are_calmed(file_regression, flat):
         return State(1e5 * row, 0.0, 1e-5 * row, 1e4 * row, row, row > 9, row)
 
     said = {
-        "calm": _calmed((state(1, 1, 1, 1), state(3, 2, 1, 1.5)), (state(3, 2, 1, 1.5),
+        "calm": _calm_start((state(1, 1, 1, 1), state(3, 2, 1, 1.5)), (state(3, 2, 1, 1.5),
                         state(1.2, 2.5, 1, 4))),
         "share": [_step_share(replace_problem(flat), 1e-6 * np.array([0.1, 2.0, 500.0]),
                               1e-6 * np.array(rise))

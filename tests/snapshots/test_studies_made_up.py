@@ -449,7 +449,7 @@ def test_treads_in_pairs(file_regression, monkeypatch, tmp_path, capsys):
         {
             "pairs": pairs, "left out": capsys.readouterr().err, "wiping": counted,
             "table": (tmp_path / "pairs.csv").read_text(),
-            "ends": {name: tread_pairs._published(cast(Any, one), 0.2)
+            "ends": {name: tread_pairs._published_bounds(cast(Any, one), 0.2)
                      for name, one in ends.items()},
             "contrasts": [[one.source, one.effect, one.topic]
                           for one in tread_pairs.tread_contrasts()],

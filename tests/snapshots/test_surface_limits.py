@@ -37,7 +37,13 @@ from underfoot.surface.roughness import (
     rms_slope,
     slope,
 )
-from underfoot.surface.scan import _cutoff, _held, _numbers, _uneven, height_cautions
+from underfoot.surface.scan import (
+    _cutoff,
+    _equal_heights_question,
+    _numbers,
+    _uneven,
+    height_cautions,
+)
 from underfoot.surface.spectrum import ProfileSpectrum
 
 UM = 1e-6
@@ -291,8 +297,10 @@ def test_heights_that_no_floor_has_and_sections_that_carry_the_roughness():
         assert bool(_uneven(sections * UM)) == (whole > 2.0) == told
     assert not _uneven(np.array([1.0, 9.0]))
     held = Profile(np.append(np.arange(900.0), np.full(100, 950.0)) * UM, UM)
-    assert "10 % of the heights are one number" in str(_held(held)).replace("10.0", "10")
-    assert not _held(sine())
+    assert "10 % of the heights are one number" in str(_equal_heights_question(held)).replace(
+        "10.0", "10"
+    )
+    assert not _equal_heights_question(sine())
 
 
 def test_numbers_of_lines_and_their_spread():

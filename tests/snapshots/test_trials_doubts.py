@@ -298,4 +298,4 @@ def test_copies_are_refused_and_the_first_counts():
     many = [[file(f"f{n}", checksum="1", shoe=f"{n}")] for n in range(7)]
     files, _ = guarded_files(many)
     assert "f0, f1, f2, f3, f4, f5 ..., noted differently" in str(files[0].reasons[0])
-    assert guard._joined([(0, 1), (3,), (1, 2), (4, 5)], 6) == [[0, 1, 2], [4, 5]]
+    assert guard._join_groups([(0, 1), (3,), (1, 2), (4, 5)], 6) == [[0, 1, 2], [4, 5]]

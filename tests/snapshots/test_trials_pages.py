@@ -137,7 +137,7 @@ def test_tiles_of_single_trials(file_regression):
         found.append([sheet.kind, sheet.title, sheet.x_range, sheet.y_range, sheet.line, tiles])
     held(
         file_regression,
-        {"sheets": found, "chosen": [one.verdict for one in drawn._chosen(files, 3)]},
+        {"sheets": found, "chosen": [one.verdict for one in drawn._choose_files(files, 3)]},
     )
 
 

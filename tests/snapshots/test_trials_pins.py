@@ -237,8 +237,10 @@ def test_a_log_that_holds_another_cof():
 
 def test_speeds_of_a_log():
     channels = {"sliding speed": Channel(np.linspace(-1, 1, 100), "m/s", RATE)}
-    assert pins._speed(Trial("a", channels), np.arange(100)) == pytest.approx(0.505, abs=1e-3)
-    assert pins._speed(Trial("a", channels), np.arange(50, 300)) == pytest.approx(0.505, abs=1e-3)
-    assert pins._speed(Trial("a", channels), np.arange(100, 300)) is None
+    assert pins._mean_speed(Trial("a", channels), np.arange(100)) == pytest.approx(0.505, abs=1e-3)
+    assert pins._mean_speed(Trial("a", channels), np.arange(50, 300)) == pytest.approx(
+        0.505, abs=1e-3
+    )
+    assert pins._mean_speed(Trial("a", channels), np.arange(100, 300)) is None
     turns = {"sliding speed": Channel(np.ones(100), "rpm", RATE)}
-    assert pins._speed(Trial("a", turns), np.arange(100)) is None
+    assert pins._mean_speed(Trial("a", turns), np.arange(100)) is None

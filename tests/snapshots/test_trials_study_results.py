@@ -266,7 +266,7 @@ def test_figures_of_sensors_and_odd_curves(file_regression):
         file_regression,
         {
             "figures": {one.name: figure_lines(one.figure) for one in figures},
-            "chosen": [f.file for f in drawn._chosen(made.slip_files(), 4)],
+            "chosen": [f.file for f in drawn._choose_files(made.slip_files(), 4)],
             "sheets": list(sheets(files)),
         },
     )

@@ -290,6 +290,6 @@ def test_walks_and_slides_are_told_apart():
 
 
 def test_runs_with_short_gaps_are_one():
-    assert check._joined([(0, 5), (8, 10), (14, 20)], 3) == [(0, 10), (14, 20)]
-    assert check._joined([(0, 5), (8, 10), (14, 20)], 4) == [(0, 20)]
-    assert check._joined([], 4) == []
+    assert check._join_runs([(0, 5), (8, 10), (14, 20)], 3) == [(0, 10), (14, 20)]
+    assert check._join_runs([(0, 5), (8, 10), (14, 20)], 4) == [(0, 20)]
+    assert check._join_runs([], 4) == []

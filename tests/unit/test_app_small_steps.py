@@ -11,7 +11,7 @@ from underfoot.app import session as session_module
 from underfoot.app.pages.compare import _Compare
 from underfoot.app.pages.trials_trial import TrialView
 from underfoot.app.project import Project, append_line
-from underfoot.app.run_preview import _moved
+from underfoot.app.run_preview import _move_number
 from underfoot.app.session import SETTLED, Session
 from underfoot.app.text import Text
 from underfoot.app.work_table import _row
@@ -19,21 +19,23 @@ from underfoot.core import InputError
 
 
 def test_a_preview_that_moved_nothing_says_what_the_run_said():
-    assert _moved(120.0, 90.0, 90.0, (500.0, 500.0)) == pytest.approx(120.0)
+    assert _move_number(120.0, 90.0, 90.0, (500.0, 500.0)) == pytest.approx(120.0)
 
 
 def test_a_preview_moves_the_odds_of_the_share_and_stays_below_what_carries_all():
     """Run 250 of 500 N (odds 1), preview from 100 (odds 1/4) to 200 N (odds 2/3): odds 8/3."""
-    assert _moved(250.0, 100.0, 200.0, (500.0, 500.0)) == pytest.approx(500 * (8 / 3) / (11 / 3))
-    assert _moved(450.0, 100.0, 490.0, (500.0, 500.0)) < 500.0
+    assert _move_number(250.0, 100.0, 200.0, (500.0, 500.0)) == pytest.approx(
+        500 * (8 / 3) / (11 / 3)
+    )
+    assert _move_number(450.0, 100.0, 490.0, (500.0, 500.0)) < 500.0
     # of another load: the same share of it
-    assert _moved(250.0, 100.0, 120.0, (500.0, 600.0)) == pytest.approx(300.0)
+    assert _move_number(250.0, 100.0, 120.0, (500.0, 600.0)) == pytest.approx(300.0)
 
 
 @pytest.mark.parametrize(("run", "before", "after"), [(0.0, 1.0, 2.0), (1.0, 0.0, 2.0)])
 def test_a_preview_of_nothing_is_the_preview_itself(run, before, after):
-    assert _moved(run, before, after, (10.0, 10.0)) == after
-    assert _moved(3.0, 2.0, 0.0, (10.0, 10.0)) == 0.0
+    assert _move_number(run, before, after, (10.0, 10.0)) == after
+    assert _move_number(3.0, 2.0, 0.0, (10.0, 10.0)) == 0.0
 
 
 def test_a_line_is_added_after_one_that_was_torn_and_after_a_whole_one(tmp_path):

@@ -1,6 +1,7 @@
 """Pages of measurements: what a folder and a trial show, and what their buttons ask for."""
 
 import asyncio
+import shlex
 from collections import Counter
 from types import SimpleNamespace
 from typing import Any
@@ -455,7 +456,10 @@ def test_a_folder_says_the_command_that_does_the_same(session, study, merged):
     study.settings |= {"merge_spelling": merged, "names": "{shoe}" if merged else ""}
     wanted = 'underfoot trials analyse "trials/walks" --protocol level_walking'
     wanted += ' --out "results/walks trials"'
-    assert study.command == wanted + " --names '{shoe}' --merge-spelling" * merged
+    assert study.command == wanted + ' --names "{shoe}" --merge-spelling' * merged
+    # a shell takes what stands between these quotes as it is
+    study.name = "Größe's walks"
+    assert shlex.split(study.command)[3] == "trials/Größe's walks"
 
 
 @pytest.mark.parametrize("query", [{}, {"study": "walks"}, {"study": "walks", "trial": "b.csv"},

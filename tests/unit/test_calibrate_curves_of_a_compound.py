@@ -6,7 +6,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from underfoot.calibrate.compound import Compound, _beside, _relaxed, relaxation_of
+from underfoot.calibrate.compound import Compound, _beside, _relaxation_curve, relaxation_of
 from underfoot.material.curves import RelaxationCurve
 
 
@@ -16,12 +16,12 @@ def curve(first, last, scale, temperature=296.0):
 
 
 def test_tests_at_one_temperature_are_averaged_where_all_of_them_have_readings():
-    mean, shifts, temperature = _relaxed([curve(1, 100, 2e6), curve(3, 40, 4e6)], None)
+    mean, shifts, temperature = _relaxation_curve([curve(1, 100, 2e6), curve(3, 40, 4e6)], None)
     assert shifts is None
     assert temperature == 296.0
     assert mean.time[[0, -1]] == pytest.approx([3.0, 40.0])
     assert mean.modulus == pytest.approx(3e6 * mean.time**-0.1, rel=1e-3)
-    alone, _, _ = _relaxed([curve(1, 100, 2e6)], None)
+    alone, _, _ = _relaxation_curve([curve(1, 100, 2e6)], None)
     assert alone.time[[0, -1]] == pytest.approx([1.0, 100.0])
 
 

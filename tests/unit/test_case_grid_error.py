@@ -152,7 +152,7 @@ def test_the_error_by_steps_is_that_of_the_first_order(monkeypatch):
     monkeypatch.setattr(numerical_error, "solved_at", at)
     monkeypatch.setattr(numerical_error, "_read", lambda _, one: {"cof": 5 + 0.4 / one.steps})
     monkeypatch.setattr(numerical_error, "cells_along", lambda *_: 1)
-    found = numerical_error._compared(parts, {"cof": 5.7}, lambda *_: None)
+    found = numerical_error._grid_differences(parts, {"cof": 5.7}, lambda *_: None)
     assert found.steps["cof"] == pytest.approx(0.4)
     assert found.grid["cof"] == pytest.approx(0.3)
 

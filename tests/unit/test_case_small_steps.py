@@ -10,7 +10,7 @@ from scipy.stats import norm
 
 from underfoot.case import Case, load
 from underfoot.case.describe import assumptions
-from underfoot.case.explanation import FIRST_SCREEN, _documented, _equation_text, _summary
+from underfoot.case.explanation import FIRST_SCREEN, _document_item, _equation_text, _summary
 from underfoot.case.friction import range_95
 from underfoot.case.lettering import text_rings
 from underfoot.case.motion import AnySpeed
@@ -151,9 +151,9 @@ def test_what_is_cut_off_after_a_colon_is_marked():
         Source: A paper of 1999.
         """
 
-    text = _documented("shortened", shortened, full=False)
+    text = _document_item("shortened", shortened, full=False)
     assert "in this order: …" in text
-    assert " …" not in _documented("whole", whole, full=False)
+    assert " …" not in _document_item("whole", whole, full=False)
 
 
 @pytest.mark.parametrize(("paragraphs", "left"), [(1, 1), (2, 2), (3, 2), (9, 2)])
@@ -166,9 +166,9 @@ def test_a_first_screen_holds_whole_paragraphs_and_the_first_of_any_length(parag
     lines = [f"line {k}" for k in range(9)]
     told.__doc__ = "\n\n".join("\n".join(lines) for _ in range(paragraphs))
     assert FIRST_SCREEN == 20
-    assert _documented("told", told, full=False).count("line 8") == left
+    assert _document_item("told", told, full=False).count("line 8") == left
     told.__doc__ = "\n".join(lines * 3)
-    assert _documented("told", told, full=False).count("line 8") == 3
+    assert _document_item("told", told, full=False).count("line 8") == 3
 
 
 @pytest.mark.parametrize("deviation", [0.05, 0.3])

@@ -50,7 +50,7 @@ def test_a_preview_keeps_the_sole_where_nothing_makes_another(case, monkeypatch,
         continuation, "prepare_case", lambda *_, geometry: asked.update(at=geometry)
     )
     parts: Any = SimpleNamespace(case=case, spacing=1e-3, sole="sole", compliance="compliance")
-    continuation._changed(parts, case.replace(changes))
+    continuation._change_case(parts, case.replace(changes))
     assert asked["at"] == (("sole", "compliance") if kept else None)
 
 

@@ -318,14 +318,14 @@ def test_a_shoe_is_turned_up_and_down_where_its_contact_goes_on(monkeypatch, fai
     monkeypatch.setattr(solve, "continue_contact", continued)
     monkeypatch.setattr(solve, "place_numbers", lambda parts, end: {"end": end})
     parts = fake(case=fake(motion=fake(build=lambda: None)))
-    found = solve._turned(parts, fake())
+    found = solve._turn_and_solve(parts, fake())
     if fails:
         assert found == {}
         return
     assert turns == [place.turn for place in TURNED]
     assert found == {place: {"end": place.turn} for place in TURNED}
     parts.case.motion.build = lambda: "history"
-    assert solve._turned(parts, fake()) == {}
+    assert solve._turn_and_solve(parts, fake()) == {}
 
 
 @pytest.mark.parametrize("processes", [1, 3])
@@ -348,7 +348,7 @@ def test_places_are_solved_one_after_the_other_or_in_processes(monkeypatch, proc
     for name, made in (
         ("tread_positions", positions_of), ("_numbers_at", numbers_at), ("in_processes", several),
         ("place_numbers", lambda *_: "own"), ("has_lugs", lambda _: True),
-        ("_turned", lambda *_: {"turned": 1}), ("position_count", lambda *_, **__: 2),
+        ("_turn_and_solve", lambda *_: {"turned": 1}), ("position_count", lambda *_, **__: 2),
     ):  # fmt: skip
         monkeypatch.setattr(solve, name, made)
     parts = fake(case=CASE, objects={}, spacing=1e-3)

@@ -274,7 +274,7 @@ def test_periods_of_a_pattern_lean_by_less_than_one_of_its_first(second, reduced
     """Of 10 units along; the lattice stays, so what is taken off is a whole number of the first."""
     unit = length / 10
     given = np.array([(10, 0), second]) * unit
-    assert positions._reduced(given) == pytest.approx(np.array([(10, 0), reduced]) * unit)
+    assert positions._reduce_periods(given) == pytest.approx(np.array([(10, 0), reduced]) * unit)
 
 
 @pytest.mark.parametrize("wet", [True, False])
@@ -292,7 +292,7 @@ def test_the_quick_grid_is_compared_in_cells_and_where_a_film_remembers_in_time(
     monkeypatch.setattr(numerical_error, "cells_along", lambda *_: 1)
     parts: Any = SimpleNamespace(case=case, viscosity=0.1 if wet else None)
     own = {"cof": 0.33, "fluid_load": 36.0}
-    told: Any = numerical_error._compared(parts, own, cast(Any, None))
+    told: Any = numerical_error._grid_differences(parts, own, cast(Any, None))
     assert told.grid == pytest.approx({"cof": 0.03, "fluid_load": 4.0})
     assert told.steps == pytest.approx({"cof": 0.04, "fluid_load": 2.0} if wet else {})
 
@@ -305,8 +305,9 @@ def test_a_region_of_a_file_bends_at_its_ball_where_it_is_nearly_the_whole(
     fakes = {
         "file_outsole": lambda _: SimpleNamespace(whole_length=whole),
         "surface_map": lambda *_, **__: "map", "trim_map": lambda made, *_: made,
-        "_jointed": lambda case, made, length: jointed.append(length) or made,
-        "check_load": lambda *_: None, "rolls": lambda _: 0.0, "_pressed": lambda case, made: made,
+        "_add_joint": lambda case, made, length: jointed.append(length) or made,
+        "check_load": lambda *_: None, "rolls": lambda _: 0.0,
+        "_press_slits": lambda case, made: made,
         "_with_cells": lambda case, made, again: made,
     }  # fmt: skip
     for name, fake in fakes.items():

@@ -150,9 +150,9 @@ def test_a_link_to_a_folder_is_followed(tmp_path):
 
 
 def test_an_old_name_answers_and_warns_at_the_line_that_calls():
-    value = SourcedValue(1.5, "Pa s", "a table", 0.1)
-    with pytest.warns(FutureWarning, match=r"SourcedValue.as_dict is to_dict now.* in 0.3") as told:
-        assert value.as_dict() == value.to_dict()
+    belt = Belt(np.zeros(1), np.array([[1.25, 0.0, 0.0]]), "foot markers", 0.01)
+    with pytest.warns(FutureWarning, match=r"Belt.words is speed_text now.* in 0.4") as told:
+        assert belt.words(0.0) == belt.speed_text(0.0)
     assert told[0].filename == __file__
 
 

@@ -15,7 +15,7 @@ from underfoot.places.place import _task
 from underfoot.questions import effects
 from underfoot.questions.changes import Change, possible_changes
 from underfoot.questions.contact import mirror_map
-from underfoot.questions.effects import MOST_ERROR, _continued, change_effects
+from underfoot.questions.effects import MOST_ERROR, _continue_march, change_effects
 from underfoot.questions.sensitivity import OPEN_INPUTS, _at
 from underfoot.surface import HeightMap
 
@@ -103,7 +103,7 @@ def test_a_preview_stands_for_a_change_where_its_error_is_small(error, uncertain
     seen = SimpleNamespace(cof=SimpleNamespace(uncertainty=uncertainty), errors={"cof": error})
     march = SimpleNamespace(continued=lambda values: seen if values == {"a": 1} else None)
     change = SimpleNamespace(values={"a": 1})
-    result = _continued(cast(Any, march), cast(Any, change), lugs)
+    result = _continue_march(cast(Any, march), cast(Any, change), lugs)
     assert (result is seen) == taken
 
 

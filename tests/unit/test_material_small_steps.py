@@ -11,7 +11,7 @@ from underfoot.material import RelaxationSpectrum, fit_relaxation
 from underfoot.material.decks import _elastic
 from underfoot.material.durometer_scales import SCALES
 from underfoot.material.gent_1958 import shore_a_gent, youngs_modulus_gent
-from underfoot.material.read import SAME, _held, _moduli
+from underfoot.material.read import SAME, _moduli, _test_rows
 from underfoot.material.ruess import youngs_modulus_ruess
 from underfoot.material.spectrum_fit import reduce_spectrum
 from underfoot.material.tables import _is_row
@@ -131,4 +131,4 @@ def test_sweeps_on_a_slow_ramp_are_tests_of_their_own(rise, tests):
     """Five sweeps, each ``rise`` (K) warmer: one temperature, a slow ramp, steps."""
     sweep = np.geomspace(0.1, 10, 6)
     kelvin = 293 + rise * np.repeat(np.arange(5), sweep.size)
-    assert len(_held(np.tile(sweep, 5), kelvin)) == tests
+    assert len(_test_rows(np.tile(sweep, 5), kelvin)) == tests

@@ -48,7 +48,7 @@ def test_every_term_of_the_friction_of_a_pair_has_its_words():
 def test_draws_in_which_nobody_slips_have_no_ratio():
     """Half the steps dry leave half of the slips: where there are none, nothing is left out."""
     before = np.r_[np.zeros(30), np.linspace(0.1, 0.9, 70)]
-    assert choice._left(0.5 * before, before) == pytest.approx((0.5, 0.5, 0.5))
+    assert choice._slip_ratio(0.5 * before, before) == pytest.approx((0.5, 0.5, 0.5))
     nobody = choice._lever("wiped up", np.zeros(9), np.zeros(9))
     assert not nobody.does_something
 

@@ -15,7 +15,7 @@ from underfoot.report import chart, compound, design_study, live_study, slips, s
 from underfoot.report.design_study import _centre, slices_figure
 from underfoot.report.question_figures import wear_figure
 from underfoot.report.solver_input import with_middle_nodes
-from underfoot.report.thumbnail import CELLS, _drawn
+from underfoot.report.thumbnail import CELLS, _draw_sole
 from underfoot.slip.dynamics.sensors import MAP_X, MAP_Y
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -151,7 +151,7 @@ def test_who_ends_last_writes_the_live_page_again_where_there_is_one(
 
 def test_a_picture_of_a_heel_is_as_long_as_wide_as_the_heel_and_darker_where_it_has_land():
     case = load(EXAMPLES / "work_shoe_full_tread_glycerol.toml")
-    picture = _drawn(case)
+    picture = _draw_sole(case)
     wide, high = map(int, re.search(r'viewBox="0 0 (\d+) (\d+)"', picture).groups())
     heel = case.shoe.heel
     assert wide / high == pytest.approx(heel.length / heel.widest, rel=0.05)

@@ -50,7 +50,7 @@ def test_a_line_is_fitted_through_the_places_between_its_ends(angle):
     noise = rng.normal(scale=0.05, size=40)
     path = 3 + along[:, None] * way + noise[:, None] * across
     path = np.concatenate([path, path[-1] + np.arange(1, 3)[:, None] * across])
-    normal, offset = made._fitted(path, np.array([0, 39, 41]))
+    normal, offset = made._fit_lines(path, np.array([0, 39, 41]))
     inner = path[1:39]
     centred = inner - inner.mean(axis=0)
     exact = np.linalg.svd(centred)[2][1]
@@ -70,7 +70,7 @@ def test_a_staircase_becomes_the_line_that_it_stands_for_with_its_corner():
     path = np.concatenate([one, two])
     path = np.round(2 * path) / 2  # half cells
     places = path.copy()
-    lines = made._straightened(places, list(range(len(path))))
+    lines = made._straighten_chain(places, list(range(len(path))))
     assert len(lines) == 2
     met = places[lines[0, 1]]
     assert np.hypot(*(met - corner)) < 0.35
@@ -87,7 +87,7 @@ def test_lines_of_a_ring_meet_where_it_is_closed_too():
     places = np.array(square)
     places[[0, 20, 40, 60]] += [[0.4, 0.4], [-0.4, 0.4], [-0.4, -0.4], [0.4, -0.4]]  # cut corners
     chain = [*range(80), 0]
-    lines = made._straightened(places, chain)
+    lines = made._straighten_chain(places, chain)
     met = places[np.unique(lines)]
     off = np.abs(met[:, None] - corners).max(axis=2).min(axis=0)
     assert off.max() < 0.1
@@ -108,12 +108,12 @@ def test_lines_meet_in_a_corner_and_those_that_hardly_turn_do_not(scale):
 
 def test_long_lines_are_halved_until_none_is_longer():
     places, lines = np.array([[0, 0], [10, 0], [10, 3]], float), np.array([[0, 1], [1, 2]])
-    ends, parts = made._divided(places, lines, 3.0)
+    ends, parts = made._divide_lines(places, lines, 3.0)
     length = np.hypot(*(ends[parts[:, 0]] - ends[parts[:, 1]]).T)
     assert np.sort(length) == pytest.approx([2.5] * 4 + [3.0])
     assert len(ends) == 6
     assert ends[:3].tolist() == places.tolist()
-    same = made._divided(places, lines, 10.0)
+    same = made._divide_lines(places, lines, 10.0)
     assert same[1].tolist() == lines.tolist()
 
 
@@ -210,14 +210,14 @@ def test_triangles_that_miss_their_cells_are_found_one_in_a_box():
     ends = np.array([[0.6, 0.6], [21.4, 0.6], [21.4, 21.4], [0.6, 21.4]])
     triangles, levels = np.array([[0, 1, 2], [0, 2, 3]]), np.array([2, 2])
     none = np.empty((0, 2))
-    missed = made._missed(grid, ends, none, triangles, levels, 100.0)
+    missed = made._most_missed_cells(grid, ends, none, triangles, levels, 100.0)
     assert len(missed) == 1
     assert np.hypot(*(missed[0] - 11)) < 6  # where the hill is
-    assert len(made._missed(grid, ends, none, triangles, levels, 2.0)) > 1
+    assert len(made._most_missed_cells(grid, ends, none, triangles, levels, 2.0)) > 1
     flat = grid_of(np.zeros((21, 21)), side=1e-3)
-    assert not len(made._missed(flat, ends, none, triangles, levels, 100.0))
+    assert not len(made._most_missed_cells(flat, ends, none, triangles, levels, 100.0))
     plane = grid_of(1e-3 * (x - 2 * y), side=1e-3)
-    assert not len(made._missed(plane, ends, none, triangles, levels, 100.0))
+    assert not len(made._most_missed_cells(plane, ends, none, triangles, levels, 100.0))
 
 
 def test_walls_stand_between_levels_and_sides_at_the_rim():

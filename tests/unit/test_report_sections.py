@@ -27,7 +27,7 @@ from underfoot.report import (
 from underfoot.report.designed_sole import DesignedSole
 from underfoot.report.drawn_sole import DrawnSole
 from underfoot.report.quantities import DrawnQuantity
-from underfoot.report.solver_input import _wrapped
+from underfoot.report.solver_input import _wrap_numbers
 from underfoot.report.surface_mesh import DRAWN, TOLERANCE
 from underfoot.report.writing import json_text
 
@@ -262,7 +262,7 @@ def test_a_thumbnail_is_drawn_once(monkeypatch):
     stored, drawn = {}, []
     cache = fake(load=stored.get, store=stored.__setitem__)
     monkeypatch.setattr(thumbnail, "Cache", lambda name: cache)
-    monkeypatch.setattr(thumbnail, "_drawn", lambda case: drawn.append(case) or "<svg>")
+    monkeypatch.setattr(thumbnail, "_draw_sole", lambda case: drawn.append(case) or "<svg>")
     assert [thumbnail.thumbnail(CASE) for _ in range(2)] == ["<svg>"] * 2
     assert len(drawn) == 1
     thumbnail.thumbnail(CASE.replace({"shoe.wear.depth": "1 mm", "shoe.wear.angle": "7 deg"}))
@@ -356,7 +356,7 @@ def test_a_field_between_cells_is_linear_to_the_rim_and_of_its_own_kind():
 
 @pytest.mark.parametrize("count", [1, 16, 17, 40])
 def test_each_number_of_a_set_stands_once_sixteen_a_line(count):
-    lines = [line.split(", ") for line in _wrapped(list(range(count)))]
+    lines = [line.split(", ") for line in _wrap_numbers(list(range(count)))]
     assert [int(each) for line in lines for each in line] == list(range(count))
     assert {len(line) for line in lines[:-1]} <= {16}
 

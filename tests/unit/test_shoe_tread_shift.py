@@ -105,3 +105,10 @@ def test_a_moved_tread_is_the_tread_drawn_there(shift):
     land = moved.land & there.land & (shape.inward_distance(x, y) > 3 * MM)
     assert np.abs(moved.height - there.height)[land].max() < 10e-6
     assert moved.tread_depth[land] == pytest.approx(3.5 * MM, abs=0.1 * MM)
+
+
+def test_a_sole_without_a_tread_moves_by_its_own_width():
+    shifts = tread_periods(heights(replace(heel(profile=Flat()), tread=None)))
+    assert shifts.shape == (2, 2)
+    assert np.isfinite(shifts).all()
+    assert shifts[0, 0] == shifts[1, 1] > 0

@@ -19,7 +19,7 @@ from underfoot.slip.dynamics import GaitHistory, observation, study
 from underfoot.slip.dynamics.gait import history_from_lines, history_text
 from underfoot.slip.dynamics.observation import Outcome, _pulses
 from underfoot.slip.dynamics.sensors import FloorSensors
-from underfoot.slip.dynamics.study import SlipStudy, _thinned, slip_study
+from underfoot.slip.dynamics.study import SlipStudy, _thin_motion, slip_study
 from underfoot.slip.dynamics.walker import Population, Walker
 from underfoot.slip.risk import LARGEST_ACOF, acof_draws
 
@@ -105,12 +105,12 @@ def test_a_motion_is_thinned_with_its_first_and_last_instant():
     count = 23
     columns: dict[str, Any] = {name: np.arange(float(count)) for name in study.COLUMNS}
     motion = study.SlipMotion(fake(), **columns, status=fake(), model="m")
-    kept = _thinned(motion).time
+    kept = _thin_motion(motion).time
     assert kept.tolist() == [0, 4, 8, 12, 16, 20, 22]
     begin: dict[str, Any] = {name: each[:5] for name, each in columns.items()}
     short = study.SlipMotion(fake(), **begin, status=fake(),
                              model="m")  # fmt: skip
-    assert _thinned(short).speed.tolist() == [0, 4]
+    assert _thin_motion(short).speed.tolist() == [0, 4]
 
 
 def test_a_study_takes_as_many_full_slips_as_are_asked_for_and_by_default_sixteen(monkeypatch):

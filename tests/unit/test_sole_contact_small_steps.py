@@ -23,7 +23,7 @@ from underfoot.sole_contact.long_waves import (
     net_over,
     splines_over,
 )
-from underfoot.sole_contact.march import Counts, _calmed, _film_mask
+from underfoot.sole_contact.march import Counts, _calm_start, _film_mask
 from underfoot.sole_contact.problem import State
 from underfoot.sole_contact.solver import longest_step, passing_time
 
@@ -158,7 +158,7 @@ def test_steps_that_swing_end_where_they_start(slope):
     starts = [state(np.array([1e-5, 1e-5, 1e5])), state(np.array([2e-5, 4e-5, -1e5]))]
     steps = [(start, state(rest + slope * (start.gap - rest))) for start in starts]
     for _ in range(40):
-        start = _calmed(*steps[-2:])
+        start = _calm_start(*steps[-2:])
         steps.append((start, state(rest + slope * (start.gap - rest))))
     for name in ("pressure", "gap", "fluid"):
         np.testing.assert_allclose(getattr(steps[-1][1], name), rest, atol=1e-4)

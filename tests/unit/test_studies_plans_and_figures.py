@@ -25,7 +25,7 @@ def slips_of(speed_of):
 
 def test_the_moving_mass_is_told_by_the_mean_of_eleven_persons():
     """A speed off by k standard errors, sd / sqrt(11), has a misfit of k^2."""
-    mean, sd = calibration._published("peak_slipping_speed_over_sensors_untreaded")
+    mean, sd = calibration._published_value("peak_slipping_speed_over_sensors_untreaded")
     ends = calibration.MASSES
     found = calibration.mass_profile(
         cast(Any, slips_of(lambda share: mean + (ends.index(share) - 3) * sd / math.sqrt(11)))
@@ -129,9 +129,9 @@ def test_a_contrast_stands_at_the_places_of_both_of_its_treads(monkeypatch):
     monkeypatch.setattr(tread_pairs, "tread_contrasts", lambda: [contrast])
     monkeypatch.setattr(tread_pairs, "corpus", list)
     monkeypatch.setattr(
-        tread_pairs, "_drawn", lambda one, of_case: np.full(3, of_case(one.cases[0]))
+        tread_pairs, "_draw_cof", lambda one, of_case: np.full(3, of_case(one.cases[0]))
     )
-    monkeypatch.setattr(tread_pairs, "_published", lambda one, under: (0.1, under))
+    monkeypatch.setattr(tread_pairs, "_published_bounds", lambda one, under: (0.1, under))
     monkeypatch.setattr(tread_pairs, "_place", lambda case: np.full(6, case))
     monkeypatch.setattr(tread_pairs, "_pair", lambda *given: given)
     computed: Any = tread_pairs.computed_pairs(cast(Any, lambda place: 10 * place))

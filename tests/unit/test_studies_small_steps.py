@@ -14,7 +14,7 @@ from underfoot.core import ConvergenceError, SourcedValue
 from underfoot.studies import corpus, g1, g2, g3, g4, g5, pair_law, tread_pairs
 from underfoot.studies.calibration import profile_figure
 from underfoot.studies.corpus import Side, _effects
-from underfoot.studies.corpus_cases import _nested
+from underfoot.studies.corpus_cases import _nest_path
 from underfoot.studies.runner import Options
 from underfoot.studies.validation import _strip_load
 from underfoot.studies.verdict import ComputedQuantity, grid_value
@@ -36,8 +36,8 @@ def test_a_strip_carries_what_its_pressure_adds_up_to(corner, slope, pool):
 
 
 def test_a_path_is_tables_in_tables():
-    assert _nested("shoe.tread.lug_width", "5 mm") == {"shoe": {"tread": {"lug_width": "5 mm"}}}
-    assert _nested("shoe", 1) == {"shoe": 1}
+    assert _nest_path("shoe.tread.lug_width", "5 mm") == {"shoe": {"tread": {"lug_width": "5 mm"}}}
+    assert _nest_path("shoe", 1) == {"shoe": 1}
 
 
 def test_a_probability_is_the_share_of_draws_between_two_ends():

@@ -7,7 +7,7 @@ import pytest
 
 from underfoot import load
 from underfoot.compute.sole import drawn_map
-from underfoot.report.surface_mesh import _along_edge, _noded, surface_mesh
+from underfoot.report.surface_mesh import _along_edge, _cut_where_lines_meet, surface_mesh
 from underfoot.shoe import Facet, Heel, Rocker, Tread, heel_map, heel_surface
 
 FINE = 0.3e-3
@@ -143,7 +143,9 @@ def test_lines_that_come_back_on_themselves_leave_few_triangles():
 
 
 def test_lines_are_cut_where_they_meet():
-    places, lines = _noded(np.array([[[0, 0], [3, 0]], [[3, 0], [1, 0]], [[2, -1], [2, 1]]]) * 1.0)
+    places, lines = _cut_where_lines_meet(
+        np.array([[[0, 0], [3, 0]], [[3, 0], [1, 0]], [[2, -1], [2, 1]]]) * 1.0
+    )
     parts = {tuple(sorted(map(tuple, places[line].tolist()))) for line in lines}
     straight = [((x, 0.0), (x + 1.0, 0.0)) for x in (0.0, 1.0, 2.0)]
     assert parts == {*straight, ((2.0, -1.0), (2.0, 0.0)), ((2.0, 0.0), (2.0, 1.0))}

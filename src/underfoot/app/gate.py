@@ -57,22 +57,22 @@ class Gate:
         headers = {k.decode("latin-1"): v.decode("latin-1") for k, v in scope["headers"]}
         query = parse_qsl(scope["query_string"].decode("latin-1"), keep_blank_values=True)
         if not self._own_host(headers):
-            await _refused(scope, send, 403, "This address is not one of this server.")
+            await _refuse(scope, send, 403, "This address is not one of this server.")
         elif self._has_token(dict(query).get("token", "")) and scope["type"] == "http":
             rest = urlencode([pair for pair in query if pair[0] != "token"])
             # quoted: no backslash or letter of another alphabet leads to another server
             place = quote(scope["path"].lstrip("/\\")) + (f"?{rest}" if rest else "")
             cookie = f"{self._cookie}={self._token}; HttpOnly; SameSite=Strict; Path=/"
             further = [("location", f"/{place}"), ("set-cookie", cookie)]
-            await _refused(scope, send, 303, "", further)
+            await _refuse(scope, send, 303, "", further)
         elif not self._has_token(self._given(headers)):
             message = (
                 "Open the address that the terminal shows where the app was started: it ends with "
                 "a key that is yours alone."
             )
-            await _refused(scope, send, 403, message)
+            await _refuse(scope, send, 403, message)
         elif (excess := self._excess(scope, headers)) is not None:
-            await _refused(scope, send, *excess)
+            await _refuse(scope, send, *excess)
         else:
             await self.app(scope, receive, _with_policy(send))
 
@@ -152,7 +152,7 @@ def _with_policy(send: Send) -> Send:
     return further
 
 
-async def _refused(
+async def _refuse(
     scope: Scope,
     send: Send,
     status: int,

@@ -297,14 +297,14 @@ class JobQueue:
     def _changed(self, task: QueuedTask) -> None:
         line = {name: getattr(task, name) for name in KEPT if getattr(task, name)}
         with suppress(OSError):  # a full disk: the job goes on, after a restart it is interrupted
-            append_line(self._file, _moved(line, str(self._file.parent), PROJECT))
+            append_line(self._file, _move_paths(line, str(self._file.parent), PROJECT))
         for number in [n for n, each in self.tasks.items() if not each.open][:-SHOWN]:
             del self.tasks[number]
 
     def _read(self) -> None:
         for line in lines(self._file):
             if isinstance(line.get("number"), int):
-                here = _moved(line, PROJECT, str(self._file.parent))
+                here = _move_paths(line, PROJECT, str(self._file.parent))
                 fields = {name: value for name, value in here.items() if name in KEPT}
                 self.tasks[line["number"]] = QueuedTask(**{"title": "", **fields})
         for task in list(self.tasks.values()):  # old ones are forgotten meanwhile
@@ -313,15 +313,15 @@ class JobQueue:
         self.tasks = dict(list(self.tasks.items())[-SHOWN:])
 
 
-def _moved(content: Any, folder: str, to: str) -> Any:
+def _move_paths(content: Any, folder: str, to: str) -> Any:
     """Return plain data with the paths in ``folder`` as paths in ``to``."""
     if isinstance(content, str):
         inside = content == folder or content.startswith((f"{folder}/", f"{folder}{os.sep}"))
         return to + content[len(folder) :] if inside else content
     if isinstance(content, Mapping):
-        return {key: _moved(each, folder, to) for key, each in content.items()}
+        return {key: _move_paths(each, folder, to) for key, each in content.items()}
     if isinstance(content, list | tuple):
-        return [_moved(each, folder, to) for each in content]
+        return [_move_paths(each, folder, to) for each in content]
     return content
 
 

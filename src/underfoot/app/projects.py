@@ -53,7 +53,7 @@ class Servers:
         """
         process, link = self._open.get(folder, (None, ""))
         if process is None or process.poll() is not None:
-            process, link = await asyncio.to_thread(_started, folder)
+            process, link = await asyncio.to_thread(_start_program, folder)
             self._open[folder] = process, link
         return link
 
@@ -63,7 +63,7 @@ class Servers:
             process.terminate()
 
 
-def _started(folder: Path) -> tuple[subprocess.Popen[str], str]:
+def _start_program(folder: Path) -> tuple[subprocess.Popen[str], str]:
     program = [sys.executable] if getattr(sys, "frozen", False) else [sys.executable, "-c", START]
     process = subprocess.Popen(
         [*program, "app", str(folder), "--no-browser", "--port", "0"],

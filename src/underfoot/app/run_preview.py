@@ -75,7 +75,7 @@ def of_run(solved: Continuation, seen: Preview, whole: Mapping[str, SourcedValue
         limits = (math.inf, math.inf)
         if name == "fluid_load":
             limits = (solved.case.motion.normal_force, load)
-        values[name] = _moved(run, before, after, limits)
+        values[name] = _move_number(run, before, after, limits)
         share = values[name] / after if after else 1.0
         known = whole[name].numerical
         relative = usual if known is None or not run else known / run
@@ -104,7 +104,7 @@ def of_run(solved: Continuation, seen: Preview, whole: Mapping[str, SourcedValue
     return replace(seen, values=values, errors=errors, cof=cof, cof_draws=draws)
 
 
-def _moved(run: float, before: float, after: float, limits: tuple[float, float]) -> float:
+def _move_number(run: float, before: float, after: float, limits: tuple[float, float]) -> float:
     """Return a number of a whole run moved as from ``before`` to ``after``, by its odds.
 
     ``limits`` are what it is at most, of the unchanged case and of the changed one.

@@ -31,7 +31,7 @@ from .project import Project
 from .projects import Servers, remember
 from .session import PICTURES, Exchange, Page, problem_parts
 from .text import LANGUAGES, Text
-from .uploads import MOST_BYTES, received
+from .uploads import MOST_BYTES, receive_file
 
 PORT = 8642
 """The port that is tried where none is named."""
@@ -156,7 +156,7 @@ def _application(project: Project, jobs: JobQueue, elsewhere: Servers | None) ->
     @application.post(UPLOADS + "{place:path}")
     async def upload(place: str, request: Request) -> Any:
         try:
-            path = await received(project, place, request.stream())
+            path = await receive_file(project, place, request.stream())
         except Exception as error:
             return {"problem": " ".join(words for _, words in problem_parts(error))}
         return {"path": path.relative_to(project.folder).as_posix()}

@@ -71,7 +71,7 @@ def record_plot(record: FileResult, signals: RecordSignals) -> dict[str, Any]:
     begin = min(each.start for each in signals.force.values())
     end = max(each.end for each in signals.force.values())
     loads = [_line(name, each.envelope(begin, end, WIDTH)) for name, each in signals.force.items()]
-    bands = [_band(each) for each in record.steps]
+    bands = [_band(step) for step in record.steps]
     return {"begin": begin, "end": end, "panels": [_panel("force", loads)], "bands": bands}
 
 
@@ -92,7 +92,7 @@ def step_plot(record: FileResult, step: StepResult, signals: RecordSignals) -> d
         {"id": "toe off", "time": toe_off, "least": contact + least, "most": plate.end},
     ]
     if "exclude" in step.by_hand:  # its marks show where it was; they are not moved
-        events = [{"id": each["id"], "time": each["time"]} for each in events]
+        events = [{"id": event["id"], "time": event["time"]} for event in events]
     curves = (each for kind in RATIOS for each in record.curves.get(kind, ()))
     for curve in (each for each in curves if each["number"] == step.number):
         loaded = [

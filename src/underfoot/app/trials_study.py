@@ -16,7 +16,7 @@ STANDARD = {"protocol": "level_walking", "names": "", "merge_spelling": False}
 def studies(project: Project) -> list[str]:
     """Return the names of the folders of trials."""
     folders = project.inside("trials").iterdir()
-    return sorted(each.name for each in folders if each.is_dir() and each.name[0] != ".")
+    return sorted(folder.name for folder in folders if folder.is_dir() and folder.name[0] != ".")
 
 
 def free_name(project: Project, wanted: str) -> str:
@@ -70,8 +70,13 @@ class TrialsFolder:
     @property
     def command(self) -> str:
         """The command that says the same, in the folder of the project."""
-        parts = ["underfoot trials analyse", json.dumps(f"trials/{self.name}"), "--protocol"]
-        parts += [self.settings["protocol"], "--out", json.dumps(f"results/{self.name} trials")]
+        parts = ["underfoot trials analyse", _in_quotes(f"trials/{self.name}"), "--protocol"]
+        parts += [self.settings["protocol"], "--out", _in_quotes(f"results/{self.name} trials")]
         if self.settings["names"]:
-            parts += ["--names", f"'{self.settings['names']}'"]
+            parts += ["--names", _in_quotes(self.settings["names"])]
         return " ".join(parts + ["--merge-spelling"] * self.settings["merge_spelling"])
+
+
+def _in_quotes(text: str) -> str:
+    """Return a text as one word of a command, for shells of all systems."""
+    return json.dumps(text, ensure_ascii=False)

@@ -62,7 +62,7 @@ def revisions(path: Path) -> list[Path]:
     return sorted(same, key=lambda each: revision(each)[1])
 
 
-async def received(project: Project, place: str, stream: AsyncIterator[bytes]) -> Path:
+async def receive_file(project: Project, place: str, stream: AsyncIterator[bytes]) -> Path:
     """Write a file as it arrives and return its path.
 
     No file is replaced: what has the name already but other content makes this one its next

@@ -117,14 +117,14 @@ def equal_land(
             + (", or set shoe.tread.land" if width else ""),
         )
     sought, before = _land_share(one), _land_share(case)
-    words = {"before": _written(width), "land": _percent(sought), "had": _percent(before)}
+    words = {"before": _width_text(width), "land": _percent(sought), "had": _percent(before)}
     if abs(before - sought) <= LAND_EQUAL:
         return {}, words
 
     def off(wide: float) -> float:
         """Return by how much the share of land is too large with channels of a width (m)."""
         progress("finding the channel width", 0.5)
-        return _land_share(case.replace(CHANNEL, _written(wide))) - sought
+        return _land_share(case.replace(CHANNEL, _width_text(wide))) - sought
 
     more = before > sought  # wider channels leave less land
     near = far = width
@@ -137,7 +137,7 @@ def equal_land(
             raise InputError(
                 Message(
                     "channels of {width} leave {name} {land} of land, {other} has {wanted}",
-                    width=_written(far),
+                    width=_width_text(far),
                     name=case.name,
                     land=reached,
                     other=one.name,
@@ -146,15 +146,15 @@ def equal_land(
                 where=CHANNEL,
                 allowed=Message(
                     "{narrowest} (two cells of the grid) to {widest}",
-                    narrowest=_written(least),
-                    widest=_written(WIDEST),
+                    narrowest=_width_text(least),
+                    widest=_width_text(WIDEST),
                 ),
                 remedy="Change shoe.tread.lug_width of one of them, then compare again",
             )
     for _ in range(HALVINGS):
         middle = (near + far) / 2
         near, far = (middle, far) if (off(middle) > 0) == more else (near, middle)
-    found = _written((near + far) / 2)
+    found = _width_text((near + far) / 2)
     share = _land_share(case.replace(CHANNEL, found))
     if abs(share - sought) > LAND_EQUAL:  # a row of lugs came onto the sole or left it
         raise InputError(
@@ -197,16 +197,16 @@ def advised_groove(path: str, folder: str, lug: int, *, progress: Progress) -> d
     ends = np.array([-width / 2, length + step])
     along, across = np.interp(x + u * ends, on_floor, line), y + v * ends
     new = {
-        "along": _written(along.mean()),
-        "across": _written(across.mean()),
-        "width": _written(width),
-        "length": _written(np.ptp(along) + np.ptp(across)),
+        "along": _width_text(along.mean()),
+        "across": _width_text(across.mean()),
+        "width": _width_text(width),
+        "length": _width_text(np.ptp(along) + np.ptp(across)),
         "angle": "90 deg" if u else "0 deg",
     }
     return {GROOVES: [*grooves_of(case), new]}
 
 
-def _written(width: float) -> str:
+def _width_text(width: float) -> str:
     return f"{round(1e3 * width, 6) + 0.0:.4g} mm"  # no rounding of zero, no sign of it
 
 

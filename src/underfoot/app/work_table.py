@@ -64,7 +64,7 @@ def rows(entries: Entries, *, progress: Progress) -> dict[str, Any]:
     ``state`` is current, earlier, not_computed, unusable or unreadable; ``remark`` says more of the
     last two. Inputs and numbers stand in SI for sorting, with ``_text`` as people read them.
     """
-    known = [(name, *_known(case, folder)) for name, case, folder in entries]
+    known = [(name, *_of_case(case, folder)) for name, case, folder in entries]
     cases = [inputs for _, inputs, _ in known if not inputs.problem]
     paths = [row[0] for row in differences([inputs.values for inputs in cases])]
     texts = [(path, *(inputs.texts.get(path, "-") for inputs in cases)) for path in paths]
@@ -140,7 +140,7 @@ def _unit(path: str) -> str:
 _kept: dict[str, tuple[list[tuple[int, int]], Any]] = {}
 
 
-def _known(case: str, folder: str) -> tuple[_Inputs, _Outcome | None]:
+def _of_case(case: str, folder: str) -> tuple[_Inputs, _Outcome | None]:
     return _of_file(Path(case), _inputs), _of_file(Path(folder) / "result.json", _outcome)
 
 

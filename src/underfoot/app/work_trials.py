@@ -166,7 +166,7 @@ def trial_view(
         edit = HandEdit(**change)
         if not keep:
             edit = replace(edit, why=edit.why or "not said yet")
-        before, after, edits = _changed(study, recording.name, one, edit)
+        before, after, edits = _change_edits(study, recording.name, one, edit)
         one = study.result(recording, file, edits=edits, store=study.store if keep else None)
         if keep:
             write_edit_text(study.folder, after)
@@ -210,7 +210,7 @@ def _analysis(study: TrialsWork, progress: Progress) -> FolderAnalysis:
     )
 
 
-def _changed(
+def _change_edits(
     study: TrialsWork, name: str, record: FileResult, change: HandEdit
 ) -> tuple[str, str, list[Edit]]:
     """Return the text of ``edits.csv`` before and after a change, and the recording's edits then.

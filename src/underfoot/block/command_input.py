@@ -169,7 +169,7 @@ def micro_case(path: Path, *, solver: str | None = None) -> MicroCase:
         InputError: A file that is no TOML, an unknown key, a value without its unit, and what
             block, surface, material and loading refuse.
     """
-    case = _completed(read_toml(path), {**_DEFAULTS, "name": path.stem}, "", str(path))
+    case = _complete_section(read_toml(path), {**_DEFAULTS, "name": path.stem}, "", str(path))
     chosen = choice(str(solver or case["solver"]), ("condensed", "explicit"), "solver")
     if not isinstance(case["finite_strain"], bool):
         raise InputError(
@@ -213,7 +213,7 @@ def micro_case(path: Path, *, solver: str | None = None) -> MicroCase:
     )
 
 
-def _completed(
+def _complete_section(
     given: Mapping[str, Any], defaults: Mapping[str, Any], section: str, path: str
 ) -> dict[str, Any]:
     """Return a section with the template's values where it has none; refuse unknown keys."""
@@ -229,7 +229,7 @@ def _completed(
                     Message("{given} is no section", given=repr(value)), where=f"{path}, {inner}"
                 )
             kept = {k: v for k, v in defaults.get(key, {}).items() if k not in _CHOICES}
-            completed[key] = _completed(value, kept, inner, path)
+            completed[key] = _complete_section(value, kept, inner, path)
     return completed
 
 

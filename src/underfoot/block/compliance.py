@@ -108,7 +108,7 @@ def condensed_block(
     plane = mesh.shape[0] * mesh.shape[1]
     stiffness, number = assemble_stiffness(same[corners], matrices, same[: top * plane])
     bottom = own[own < plane]
-    return _condensed(
+    return _condense_block(
         block,
         poisson_ratio,
         mesh,
@@ -120,7 +120,7 @@ def condensed_block(
     )
 
 
-def _condensed(
+def _condense_block(
     block: MicroBlock,
     poisson_ratio: float,
     mesh: BlockMesh,
@@ -316,7 +316,7 @@ def pressed_block(
         pressing.solve(pressure_ratio * block.nominal_area * part / LOAD_STEPS)
     matrix, number, _ = pressing.stiffness()
     bottom = pressing.bottom
-    free = _condensed(block, poisson_ratio, mesh, matrix, number, bottom, (0, 1, 2), progress)
+    free = _condense_block(block, poisson_ratio, mesh, matrix, number, bottom, (0, 1, 2), progress)
     # Where the nodes would be without the floor's push, were the compliance constant.
     rest = free.points + pressing.displacement[bottom]
     assert free.unit_vector_compliance is not None

@@ -120,7 +120,7 @@ class Compound(Presentable):
                 ),
             )
         values = {
-            "modulus": _shown(self.modulus()),
+            "modulus": _value_text(self.modulus()),
             "time": Amount(self._time, "s"),
             "count": len(self.spectrum),
         }
@@ -146,7 +146,7 @@ class Compound(Presentable):
 
     def table(self) -> Table:
         """Return the moduli with where they come from."""
-        rows = [("Young's modulus", _shown(self.modulus()), self.modulus().source)]
+        rows = [("Young's modulus", _value_text(self.modulus()), self.modulus().source)]
         if self.spectrum is not None:
             rows += [
                 (Part("at once"), display(self.spectrum.instantaneous_modulus, "Pa"), "spectrum"),
@@ -383,13 +383,13 @@ def compound_from_files(
     warnings: list[Message] = []
     sweep, shifts, at, fit = None, None, None, None
     if sweeps:
-        sweep, shifts, at = _swept(sweeps, temperature, warnings)
+        sweep, shifts, at = _sweep_spectrum(sweeps, temperature, warnings)
         moduli = sweep.angular_frequency, sweep.storage_modulus, sweep.loss_modulus
         fit = fit_dynamic(*moduli, source="dynamic sweeps of " + _names(files))
     relaxation, relaxed = None, None
     readings = curves or [relaxation_of(test) for test in compressions]
     if readings:
-        relaxation, table, own_at = _relaxed(readings, temperature)
+        relaxation, table, own_at = _relaxation_curve(readings, temperature)
         relaxed = fit_relaxation(
             relaxation.time, relaxation.modulus, source="relaxation of " + _names(files)
         )
@@ -460,7 +460,7 @@ def _read(
     try:
         test = read_rubber(file, **given)
     except DataError as error:
-        if _recorded(file) is None:
+        if _read_recording(file) is None:
             raise
         test, reason = None, error.what
     if test is not None:
@@ -486,7 +486,7 @@ def _read(
                 for one in found
             ]
         return found, notes
-    trial = _recorded(file)
+    trial = _read_recording(file)
     if trial is None:
         raise DataError(
             f"{file.name} is no test of a rubber{f' ({reason})' if reason else ''}",
@@ -507,7 +507,7 @@ def _read(
     return read, []
 
 
-def _recorded(file: Path) -> Trial | None:
+def _read_recording(file: Path) -> Trial | None:
     """Return the recording of a compression test in a file; None where there is no force."""
     try:
         trial = read_trial(file)
@@ -539,7 +539,7 @@ def _refuse_rising(curve: RelaxationCurve) -> None:
         )
 
 
-def _swept(
+def _sweep_spectrum(
     sweeps: list[DynamicSweep], temperature: float | None, warnings: list[Message]
 ) -> tuple[DynamicSweep | DynamicMasterCurve, ShiftTable | None, float | None]:
     if len(sweeps) == 1:
@@ -556,7 +556,7 @@ def _swept(
     return master, master.shifts, master.shifts.reference_temperature
 
 
-def _relaxed(
+def _relaxation_curve(
     curves: list[RelaxationCurve], temperature: float | None
 ) -> tuple[RelaxationCurve | RelaxationMasterCurve, ShiftTable | None, float | None]:
     if len({curve.temperature for curve in curves}) == 1:
@@ -642,7 +642,7 @@ def _names(files: Sequence[Path]) -> str:
     return ", ".join(file.name for file in files)
 
 
-def _shown(value: SourcedValue) -> str:
+def _value_text(value: SourcedValue) -> str:
     if value.value is None:
         return Message("not estimated: {reason}", reason=value.reason)
     spread = "" if value.uncertainty is None else f" ± {display(value.uncertainty, 'Pa')}"

@@ -178,7 +178,7 @@ def law_table(readings: TrialReadings, *, form: str = "fit") -> LawTable:
             "R^2 {r_squared:.3f}, {count} readings",
             boundary=boundary, tau=tau, left=left, r_squared=fit.r_squared, count=fit.n,
         ),
-        *(Remark.of(each.name, each.remark) for each in parts if each.remark),
+        *(Remark.of(part.name, part.remark) for part in parts if part.remark),
     ]  # fmt: skip
     return LawTable(
         places,

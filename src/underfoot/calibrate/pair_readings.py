@@ -151,7 +151,7 @@ class PairCalibration(Presentable):
 
     def _taken(self) -> list[tuple[str, float, float]]:
         """Return the errors that the readings made smaller, the most first."""
-        smaller = [each for each in self.errors if each[2] < 0.95 * each[1]]
+        smaller = [error for error in self.errors if error[2] < 0.95 * error[1]]
         most = max(self.errors, key=lambda each: each[1] ** 2 - each[2] ** 2)
         return sorted(smaller or [most], key=lambda each: each[2] ** 2 - each[1] ** 2)
 

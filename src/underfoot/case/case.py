@@ -170,8 +170,8 @@ class Case(Presentable):
         if places.file and "name" not in given:
             edits = {**edits, "name": Path(places.file).stem}
             given = {**given, "name": edits["name"]}
-        changes = _with_name(given, _checked(settings))
-        given = _edited(given, changes)
+        changes = _with_name(given, _check_settings(settings))
+        given = _set_paths(given, changes)
         case._compose(
             given,
             catalogue,
@@ -234,7 +234,7 @@ class Case(Presentable):
             catalogue=catalogue,
             changes=(*(remarks or ()), *(left_out if remarks or callable(lenient) else ())),
             _parts=parts,
-            _given=_edited(given, dropped),
+            _given=_set_paths(given, dropped),
             _text=text,
             _edits={**(edits or {}), **dropped},
             _folder=folder,
@@ -258,7 +258,7 @@ class Case(Presentable):
         catalogue entry, a slot's that of an option, a mapping or a section. What the new option of
         a slot does not use goes with the old one.
         """
-        changes = _checked(path if isinstance(path, Mapping) else {path: value})
+        changes = _check_settings(path if isinstance(path, Mapping) else {path: value})
         for section_path, section in list(changes.items()):
             if isinstance(section, Section):
                 fields = self._changed_fields(section_path, section)
@@ -268,7 +268,7 @@ class Case(Presentable):
         case = object.__new__(type(self))
         before = {path: old for path, old in self._edits.items() if not _covers(changes, path)}
         case._compose(
-            _edited(self._given, changes),
+            _set_paths(self._given, changes),
             self.catalogue,
             toml.Places(),
             self._folder,
@@ -329,7 +329,7 @@ class Case(Presentable):
             return self._text
         edits = {path: _as_text(value, path) for path, value in self._edits.items()}
         text = toml.change_text(self._text, edits, expand_sections)
-        return toml.change_text(text, dict.fromkeys(_emptied(text)), expand_sections)
+        return toml.change_text(text, dict.fromkeys(_empty_sections(text)), expand_sections)
 
     @cached_property
     def hash(self) -> str:
@@ -344,7 +344,7 @@ class Case(Presentable):
         for path, section, name in self._values():
             cls, here = type(section), f"{path}.{name}"
             if isinstance(section, Option) and name == section.key:
-                content[here] = section.name if _packaged(section) else cls
+                content[here] = section.name if _is_packaged(section) else cls
                 continue
             value = getattr(section, name)
             if here in self.idle_paths or value is None or isinstance(value, Section):
@@ -352,10 +352,10 @@ class Case(Presentable):
             if name in cls.file_paths:
                 content[here] = Path(value).stem
             elif name not in cls.replaced:
-                content[here] = _rounded(value)
+                content[here] = _round_number(value)
                 origin = section._origins.get(name)
                 if origin and origin.value == value and origin.uncertainty is not None:
-                    content[f"{here}.uncertainty"] = _rounded(origin.uncertainty)
+                    content[f"{here}.uncertainty"] = _round_number(origin.uncertainty)
         return content_hash(content)[:32]
 
     @property
@@ -379,7 +379,7 @@ class Case(Presentable):
         sections = list(walk(self._parts))
         options = [each for _, each in sections if isinstance(each, Option)]
         idle = set(optional_reads()) - {path for option in options for path in option.reads}
-        if all(map(_packaged, options)):
+        if all(map(_is_packaged, options)):
             idle |= {
                 f"{path}.{name}"
                 for path, section in sections
@@ -515,7 +515,7 @@ class Case(Presentable):
         return tree
 
 
-def _packaged(option: Option) -> bool:
+def _is_packaged(option: Option) -> bool:
     """Return whether an option is of this package."""
     return type(option).__module__.startswith("underfoot.")
 
@@ -571,15 +571,15 @@ def _current(mapping: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]
         edits |= {old: None, new: value}
     if not edits:
         return dict(mapping), edits
-    current = _edited(mapping, edits)
+    current = _set_paths(mapping, edits)
     gone = [path for path in GONE if _is_empty(current, path)]
     edits |= dict.fromkeys(gone)
-    return _edited(current, dict.fromkeys(gone)), edits
+    return _set_paths(current, dict.fromkeys(gone)), edits
 
 
 def with_settings(mapping: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return a mapping in the paths of version 2 with values set by dotted path."""
-    return _edited(_current(mapping)[0], current_settings(settings))
+    return _set_paths(_current(mapping)[0], current_settings(settings))
 
 
 def _with_name(given: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -593,7 +593,7 @@ def _with_name(given: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str
     if "name" in changes or not isinstance(given.get("name"), str) or not replaced:
         return dict(changes)
     told = [_told_change(path, value) for path, value in replaced.items()]
-    more = [f"and {len(told) - NAMED} more"] if len(told) > NAMED else []
+    more = [Message("and {count} more", count=len(told) - NAMED)] if len(told) > NAMED else []
     return {**changes, "name": ", ".join([given["name"], *told[:NAMED], *more])}
 
 
@@ -625,12 +625,12 @@ def _is_empty(mapping: Mapping[str, Any], path: str) -> bool:
     return isinstance(item, Mapping) and set(item) <= marks
 
 
-def _emptied(text: str) -> list[str]:
+def _empty_sections(text: str) -> list[str]:
     mapping = toml.parse_toml(text)
     return [path for path in GONE if _is_empty(mapping, path)]
 
 
-def _checked(settings: Mapping[str, Any]) -> dict[str, Any]:
+def _check_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return settings in the paths of version 2; refuse unknown paths and misfits."""
     changes = current_settings(settings)
     for path, value in changes.items():  # an option of one's own brings its keys
@@ -654,7 +654,7 @@ def _covers(changes: Mapping[str, Any], path: str) -> bool:
     return any(path == other or path.startswith(other + ".") for other in changes)
 
 
-def _edited(mapping: Mapping[str, Any], edits: Mapping[str, Any]) -> dict[str, Any]:
+def _set_paths(mapping: Mapping[str, Any], edits: Mapping[str, Any]) -> dict[str, Any]:
     """Return nested mappings with values set (or, with None, taken out) by dotted path."""
     edited = dict(mapping)
     for path, value in edits.items():
@@ -728,12 +728,12 @@ def _origin_toml(origin: Origin, path: str) -> Any:
     return {"value": given, **marks} if marks else given
 
 
-def _rounded(value: Any) -> Any:
+def _round_number(value: Any) -> Any:
     """Return the value with 12 significant digits: "219 cP" and "0.219 Pa*s" are the same."""
     if isinstance(value, float):
         return float(f"{value:.12g}")
     if isinstance(value, Section):
-        return {name: _rounded(getattr(value, name)) for name in type(value).model_fields}
+        return {name: _round_number(getattr(value, name)) for name in type(value).model_fields}
     if isinstance(value, list | tuple):
-        return [_rounded(item) for item in value]
+        return [_round_number(item) for item in value]
     return value

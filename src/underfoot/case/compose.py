@@ -99,10 +99,10 @@ def compose_case(
                 del laid[other]
         laid[path] = origin
         record.pop(path, None)
-    tree = _nested({**record, **laid}, tables)
+    tree = _nest_values({**record, **laid}, tables)
     if tables.get("contaminant") is not None and _from(tables, "contaminant") == DRY:
         tree["contaminant"] = None
-    composition.tree = _settled(composition, CaseParts, tree, "")
+    composition.tree = _settle_section(composition, CaseParts, tree, "")
     _settle_hardness(composition)
     _settle_contact(composition)
     _settle_reads(composition)
@@ -197,7 +197,7 @@ def _of_another_fluid(origin: Origin, entries: Mapping[str, str]) -> bool:
     return origin.kind == CATALOGUE and origin.entry.startswith("fluid ") and origin.entry != ours
 
 
-def _nested(origins: Mapping[str, Origin], tables: Mapping[str, Any]) -> dict[str, Any]:
+def _nest_values(origins: Mapping[str, Origin], tables: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values as nested tables; the empty tables that were given are kept."""
     tree = _sections(tables)
     for path, origin in origins.items():
@@ -219,7 +219,7 @@ def _sections(table: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _settled(
+def _settle_section(
     composition: Composition, model: type[Section], table: dict[str, Any], path: str
 ) -> dict[str, Any]:
     """Return a section's table without what its option does not take, with what files hold."""
@@ -237,7 +237,9 @@ def _settled(
                 del table[key]
             elif composition.lenient(here):
                 del table[key]
-                composition.dropped[here] = f'not used by {model.key} = "{model.name}"'
+                composition.dropped[here] = Message(
+                    'not used by {key} = "{name}"', key=model.key, name=model.name
+                )
     try:
         table = model.completed(table, composition.folder, path)
     except InputError as error:
@@ -247,7 +249,7 @@ def _settled(
         section = section_in(info)
         if section is not None and isinstance(table.get(key), dict):
             below = f"{path}.{key}" if path else key
-            table[key] = _settled(composition, section, table[key], below)
+            table[key] = _settle_section(composition, section, table[key], below)
     return table
 
 

@@ -62,7 +62,7 @@ def translate_errors(
     """Return the findings of a validation; what is missing within ``without`` is left out."""
     skipped = tuple(tuple(section.split(".")) for section in without)
     return [
-        _translated(item, model, tree, places)
+        _translate_error(item, model, tree, places)
         for item in error.errors(include_url=False)
         if item["type"] != "missing" or not any(item["loc"][: len(s)] == s for s in skipped)
     ]
@@ -87,7 +87,7 @@ def _owner(model: type[Section], tree: Any, location: tuple[str, ...]) -> type[S
     return owner
 
 
-def _translated(
+def _translate_error(
     item: Mapping[str, Any], model: type[Section], tree: Any, places: Place
 ) -> InputError:
     location = tuple(str(part) for part in item["loc"])
@@ -150,7 +150,10 @@ def _not_taken(owner: type[Section] | None, key: str, where: str) -> InputError:
         return error
     takers = [name for name, o in owner.options().items() if nearest in o.model_fields]
     choice = " or ".join(f'{owner.key} = "{name}"' for name in takers)
-    pieces = {"nearest": nearest, "remedy": f"{nearest} belongs to {choice}"}
+    pieces = {
+        "nearest": nearest,
+        "remedy": Message("{nearest} belongs to {choice}", nearest=nearest, choice=choice),
+    }
     return InputError(error.what, where=where, **(error.parts | pieces))
 
 

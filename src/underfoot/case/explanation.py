@@ -71,13 +71,13 @@ def explanation(name: str, catalogue: Catalogue, *, full: bool = False) -> str:
                 allowed=Message("Eq. 1 to Eq. {count} of the report", count=len(EQUATIONS)),
             )
         return _equation(number, closures)
-    chosen = [name] if name in closures else _named(name, closures)
+    chosen = [name] if name in closures else _find_formulas(name, closures)
     main = [each for each in chosen if name.replace("_", "").casefold() in each.casefold()]
     if len(chosen) > 1 and len(main) == 1:
-        parts.append(_documented(main[0], closures[main[0]], full=full))
+        parts.append(_document_item(main[0], closures[main[0]], full=full))
         chosen = [each for each in chosen if each not in main]
     elif len(chosen) == 1:
-        parts.append(_documented(chosen[0], closures[chosen[0]], full=full))
+        parts.append(_document_item(chosen[0], closures[chosen[0]], full=full))
         chosen = []
     if chosen:
         width = max(map(len, chosen))
@@ -149,7 +149,7 @@ def _closures() -> Iterator[tuple[str, Any]]:
                 yield name, item
 
 
-def _named(name: str, closures: Mapping[str, Any]) -> list[str]:
+def _find_formulas(name: str, closures: Mapping[str, Any]) -> list[str]:
     """Return the formulas of a word or an author."""
     word = name.casefold()
     return [
@@ -198,7 +198,7 @@ def _summary(item: Any, longest: int) -> str:
     return text if len(text) <= longest else text[: longest - 2].rstrip() + " …"
 
 
-def _documented(name: str, item: Any, *, full: bool) -> str:
+def _document_item(name: str, item: Any, *, full: bool) -> str:
     try:
         signature = str(inspect.signature(item)).replace("'", "")
     except (TypeError, ValueError):

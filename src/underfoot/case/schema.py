@@ -86,7 +86,7 @@ def _definition(section: type[Section], definitions: dict[str, Any], kind: str) 
         }
     required: list[str] = []
     if issubclass(section, Option):
-        choice = _sourced({"const": section.name})
+        choice = _with_source({"const": section.name})
         choice |= {"description": section.source} if section.source else {}
         usual = section.usual == section.name or section.chosen_by or kind
         properties[section.key] = choice
@@ -101,7 +101,7 @@ def _definition(section: type[Section], definitions: dict[str, Any], kind: str) 
                 properties[key] = {"anyOf": [properties[key], names]}
         elif (item := item_section(field)) is not None:
             entry = {"type": "array", "items": _reference(item, definitions, "")}
-            properties[key] = _described(entry, field)
+            properties[key] = _describe_entry(entry, field)
         else:
             properties[key] = _leaf(field)
     return {
@@ -118,16 +118,16 @@ def _leaf(field: FieldInfo) -> dict[str, Any]:
     if quantity is not None:
         kinds = ["number", "string"] if quantity.unit == "1" else ["string"]
         limits = {"minimum_si": quantity.low, "maximum_si": quantity.high}
-        entry = _sourced({"type": kinds}) | {"unit": quantity.unit} | limits
+        entry = _with_source({"type": kinds}) | {"unit": quantity.unit} | limits
     else:
         parts = [part for part in _parts(field.annotation) if part is not type(None)]
         literal = next((p for p in parts if typing.get_origin(p) is typing.Literal), None)
         choices = {"enum": list(typing.get_args(literal))}
-        entry = _sourced(choices if literal else {"type": _TYPES.get(parts[0], "string")})
-    return _described(entry, field)
+        entry = _with_source(choices if literal else {"type": _TYPES.get(parts[0], "string")})
+    return _describe_entry(entry, field)
 
 
-def _described(entry: dict[str, Any], field: FieldInfo) -> dict[str, Any]:
+def _describe_entry(entry: dict[str, Any], field: FieldInfo) -> dict[str, Any]:
     known = default_of(field)
     if known is not None:
         entry = {**entry, "default": known.text}
@@ -135,7 +135,7 @@ def _described(entry: dict[str, Any], field: FieldInfo) -> dict[str, Any]:
     return entry | ({"description": description} if description else {})
 
 
-def _sourced(plain: dict[str, Any]) -> dict[str, Any]:
+def _with_source(plain: dict[str, Any]) -> dict[str, Any]:
     return {"anyOf": [plain, {"$ref": f"#/$defs/{_SOURCED}"}]}
 
 

@@ -295,7 +295,7 @@ class Option(Section):
             remedy = "Give the class another name"
             raise InputError(f"{option} {what}", where=where, remedy=remedy)
         if missing := ", ".join(sorted(cls.__abstractmethods__)):
-            remedy = f"Define it as the other options of {cls.slot} do"
+            remedy = Message("Define it as the other options of {slot} do", slot=cls.slot)
             raise InputError(f"{option} does not define {missing}", where=where, remedy=remedy)
         present[name] = cls
 
@@ -344,7 +344,9 @@ class Option(Section):
         if isinstance(given, str):
             given = {cls.key: given}
         if not isinstance(given, Mapping):
-            allowed = f"one of {', '.join(cls.options())}, or a section with its own keys"
+            allowed = Message(
+                "one of {options}, or a section with its own keys", options=", ".join(cls.options())
+            )
             raise refusal(
                 "input",
                 InputError(
@@ -375,7 +377,7 @@ class Option(Section):
         """Return the option that a package offers by this name, or at ``module:Class``."""
         if ":" not in name:
             option = find_offer(cls.slot, name, cls._wrong)
-            return option or _named(cls.options(), name)
+            return option or _find_option(cls.options(), name)
         option = load_address(name)
         if wrong := cls._wrong(option):
             raise InputError(f'"{name}" {wrong}')
@@ -395,7 +397,7 @@ class Option(Section):
         return f"{type(self).__name__}({', '.join(shown)})"
 
 
-def _named(options: Mapping[str, type[Option]], name: str) -> type[Option]:
+def _find_option(options: Mapping[str, type[Option]], name: str) -> type[Option]:
     if name not in options:
         error = unknown_name("choice", name, options)
         raise InputError(error.what, allowed=", ".join(options), nearest=error.nearest)

@@ -115,7 +115,11 @@ class Material(Section):
         values = _compound(Path(name), plain(table["sha256"]), f"{where}.file")
         name = Path(name).name
         if "modulus" in values:  # a measured modulus goes before a hardness of the catalogue
-            table = {k: item for k, item in table.items() if k != "shore_a" or not _laid(item)}
+            table = {
+                k: item
+                for k, item in table.items()
+                if k != "shore_a" or not _is_from_catalogue(item)
+            }
         if "relaxation" in values:
             given = table.get("relaxation") or {}
             spectrum = with_file_values(given, values.pop("relaxation"), name)
@@ -165,7 +169,7 @@ class Material(Section):
             )
 
 
-def _laid(item: Any) -> bool:
+def _is_from_catalogue(item: Any) -> bool:
     origin = origin_of(item)
     return origin is not None and origin.kind == CATALOGUE
 

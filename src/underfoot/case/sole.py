@@ -250,7 +250,7 @@ class TreadPattern(Option):
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         if self.arc_channel is not None:
             yield from through_outsole(case, self.arc_channel.depth, f"{where}.arc_channel.depth")
-            yield from _resolved(case, f"{where}.arc_channel.width", self.arc_channel.width)
+            yield from _check_resolution(case, f"{where}.arc_channel.width", self.arc_channel.width)
 
 
 class NoTread(TreadPattern):
@@ -320,7 +320,7 @@ class Lugs(TreadPattern):
         yield from through_outsole(case, self.depth, f"{where}.depth")
         for name in ("lug_width", "channel_width", *_LUG_SIDES):
             if hasattr(self, name):
-                yield from _resolved(case, f"{where}.{name}", getattr(self, name))
+                yield from _check_resolution(case, f"{where}.{name}", getattr(self, name))
         smallest = min([self.lug_width, *(getattr(self, name, math.inf) for name in _LUG_SIDES)])
         rounding = min(self.depth or math.inf, smallest / 2)
         for name in ("edge_radius", "edge_chamfer"):
@@ -338,7 +338,7 @@ class Lugs(TreadPattern):
             yield from self._sipe_problems(self.sipes, f"{where}.sipes")
         plan = case.shoe.heel
         for number, each in enumerate(self.grooves or ()):
-            yield from _resolved(case, f"{where}.grooves[{number}].width", each.width)
+            yield from _check_resolution(case, f"{where}.grooves[{number}].width", each.width)
             if not 0 <= each.along <= plan.length or abs(each.across) > plan.widest / 2:
                 limits = f"0 to {display(plan.length, 'm')}, {display(plan.widest / 2, 'm')} aside"
                 what = "the middle of the groove lies beside the sole"
@@ -496,7 +496,7 @@ class LetteringTread(Lugs):
             return
         yield from super().problems(case, where)
         stroke = self.letters().stroke
-        yield from _resolved(case, f"{where}.lug_width", stroke)
+        yield from _check_resolution(case, f"{where}.lug_width", stroke)
         if self.edge_radius > min(self.depth, stroke / 2):
             yield RangeError(
                 f"{display(self.edge_radius, 'm')} does not fit on the letters' strokes",
@@ -522,7 +522,7 @@ def through_outsole(case: CaseView, depth: float, where: str) -> Iterator[InputE
         )
 
 
-def _resolved(case: CaseView, path: str, width: float) -> Iterator[InputError]:
+def _check_resolution(case: CaseView, path: str, width: float) -> Iterator[InputError]:
     for name in ("grid_spacing", "quick_grid_spacing"):
         spacing = getattr(case.numerics, name)
         if width < _CELLS * spacing * (1 - 1e-9):

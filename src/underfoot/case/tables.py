@@ -164,7 +164,7 @@ def _one_sheet(path: Path, headings: Sequence[tuple[str, ...]], where: str) -> S
         with suppress(DataError):  # a sheet without a table
             sheet = read_sheet(path, sheet=name)
             known = {_plain(head) for head in sheet.numbers}
-            if all(known.intersection(each) for each in headings):
+            if all(known.intersection(heading) for heading in headings):
                 fitting.append((name, sheet))
     if len(fitting) > 1:
         raise InputError(
@@ -217,7 +217,12 @@ def _column(sheet: Sheet, unit: str, headings: tuple[str, ...], where: str) -> A
                 refuse_percent(written, where=where)
             factor = to_si(f"1 {written}", unit, where=where)
         except InputError as error:
-            what = f'{sheet.name}: "{written}" is no unit of {where.rpartition(", ")[2]}'
+            what = Message(
+                '{name}: "{written}" is no unit of {column}',
+                name=sheet.name,
+                written=written,
+                column=where.rpartition(", ")[2],
+            )
             raise InputError(what, where=where, allowed=unit) from error
     return np.asarray(sheet.numbers[key], dtype=float) * factor
 

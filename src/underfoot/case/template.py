@@ -74,7 +74,7 @@ def template(
         lines.append(f"[{section}]")
         kind, _ = CATALOGUE_SECTIONS[section]
         note = f"# {titles[section]}; others: underfoot catalogue {kind}"
-        lines.append(_commented(f'from = "{entry}"', note))
+        lines.append(_line_with_remark(f'from = "{entry}"', note))
         if entry != DRY or section != "contaminant":
             lines += _overrides(section, entry, catalogue)
         lines.append("")
@@ -94,7 +94,7 @@ def _overrides(section: str, name: str, catalogue: Catalogue) -> list[str]:
             continue
         remark = _remark(field_at(full), assumed=leaf.assumed)
         path = full.removeprefix(f"{section}.")
-        lines.append(_commented(f"# {path} = {_text(leaf.given)}", remark))
+        lines.append(_line_with_remark(f"# {path} = {_text(leaf.given)}", remark))
     return lines
 
 
@@ -104,7 +104,7 @@ def _remark(field: FieldInfo | None, *, assumed: bool) -> str:
     return f"# {text}" if text else ""
 
 
-def _commented(line: str, remark: str) -> str:
+def _line_with_remark(line: str, remark: str) -> str:
     return f"{line:{_COLUMN}} {remark}".rstrip()
 
 

@@ -72,12 +72,12 @@ def _moves(
         leaf = not isinstance(item, Mapping) or "value" in item
         if path in RENAMED or (leaf and path in SHORT):
             new = RENAMED.get(path) or SHORT[path]
-            yield path, new, _marked(item, marks)
+            yield path, new, _with_marks(item, marks)
         elif not leaf:
             yield from _moves(item, f"{path}.", marks)
 
 
-def _marked(item: Any, marks: Mapping[str, Any]) -> Any:
+def _with_marks(item: Any, marks: Mapping[str, Any]) -> Any:
     if not marks:
         return item
     return {**marks, **(item if isinstance(item, Mapping) else {"value": item})}

@@ -65,8 +65,8 @@ class Group(TyperGroup):
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Return the names of all commands; those that can't be loaded are told and left out."""
-        names = [each.removeprefix(self._prefix) for each in offers("commands")
-                 if each.startswith(self._prefix)]  # fmt: skip
+        names = [offer.removeprefix(self._prefix) for offer in offers("commands")
+                 if offer.startswith(self._prefix)]  # fmt: skip
         for name in names:
             if name in self.commands or "." in name:
                 continue

@@ -34,7 +34,7 @@ LENGTHS = {
 }
 
 
-def _given(text: str) -> Any:
+def _option(text: str) -> Any:
     return typer.Option(help=text)
 
 
@@ -46,28 +46,28 @@ PATTERNS = (
 
 def make(
     spec: Annotated[Path | None, typer.Argument(help="Outsole file or case file (TOML).")] = None,
-    pattern: Annotated[str | None, _given(PATTERNS)] = None,
-    lug: Annotated[str | None, _given('Width of a lug, as "6 mm".')] = None,
-    channel: Annotated[str | None, _given("Width of a channel.")] = None,
-    pitch: Annotated[str | None, _given("Lug and channel together.")] = None,
-    depth: Annotated[str | None, _given("Height of the lugs.")] = None,
-    lug_length: Annotated[str | None, _given("Of blocks.")] = None,
-    arm: Annotated[str | None, _given("Of chevrons, across.")] = None,
-    wave_length: Annotated[str | None, _given("Of waves, across.")] = None,
-    wave_height: Annotated[str | None, _given("Of waves, along.")] = None,
-    ring: Annotated[str | None, _given("Wall of rings.")] = None,
-    front_lug: Annotated[str | None, _given("Of graded circles, in front.")] = None,
-    graded_length: Annotated[str | None, _given("Over which they change.")] = None,
-    angle: Annotated[str | None, _given("Of the pattern.")] = None,
-    edge: Annotated[str | None, _given("Radius of the lugs' edges.")] = None,
-    chamfer: Annotated[str | None, _given("Width of a 45 degree chamfer instead.")] = None,
-    text: Annotated[str | None, _given('Of lettering, as "GRIP"; --lug is its height.')] = None,
-    sipes: Annotated[str | None, _given('Width, depth and spacing: "0.5 mm, 2 mm, 4 mm".')] = None,
+    pattern: Annotated[str | None, _option(PATTERNS)] = None,
+    lug: Annotated[str | None, _option('Width of a lug, as "6 mm".')] = None,
+    channel: Annotated[str | None, _option("Width of a channel.")] = None,
+    pitch: Annotated[str | None, _option("Lug and channel together.")] = None,
+    depth: Annotated[str | None, _option("Height of the lugs.")] = None,
+    lug_length: Annotated[str | None, _option("Of blocks.")] = None,
+    arm: Annotated[str | None, _option("Of chevrons, across.")] = None,
+    wave_length: Annotated[str | None, _option("Of waves, across.")] = None,
+    wave_height: Annotated[str | None, _option("Of waves, along.")] = None,
+    ring: Annotated[str | None, _option("Wall of rings.")] = None,
+    front_lug: Annotated[str | None, _option("Of graded circles, in front.")] = None,
+    graded_length: Annotated[str | None, _option("Over which they change.")] = None,
+    angle: Annotated[str | None, _option("Of the pattern.")] = None,
+    edge: Annotated[str | None, _option("Radius of the lugs' edges.")] = None,
+    chamfer: Annotated[str | None, _option("Width of a 45 degree chamfer instead.")] = None,
+    text: Annotated[str | None, _option('Of lettering, as "GRIP"; --lug is its height.')] = None,
+    sipes: Annotated[str | None, _option('Width, depth and spacing: "0.5 mm, 2 mm, 4 mm".')] = None,
     whole: Annotated[
         bool, typer.Option("--whole", help="A whole sole of common widths, not a heel.")
     ] = False,
     set_: Settings = None,
-    out: Annotated[Path | None, _given("File: .step, .stl, .obj or .ply (mm).")] = None,
+    out: Annotated[Path | None, _option("File: .step, .stl, .obj or .ply (mm).")] = None,
     json: AsJson = False,
     overwrite: Overwrite = False,
 ) -> None:

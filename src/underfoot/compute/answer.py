@@ -49,7 +49,7 @@ def answer(
         labels=labels,
         data=_fields(parts, solution, positions, reading),
         status=status,
-        breaches=remarks(getattr(each, "remark", each) for each in breaches),
+        breaches=remarks(getattr(breach, "remark", breach) for breach in breaches),
         assumptions=remarks(
             (
                 *assumptions(case),

@@ -219,7 +219,7 @@ class Continuation:
                 remedy="Run the changed case",
             )
         level = case.replace("motion.shoe_angle", angle)  # the map keeps its angle, the sole rolls
-        parts = _changed(self._parts, level)
+        parts = _change_case(self._parts, level)
         before, land = self._parts.sole.land, parts.sole.land
         same = land.shape == before.shape
         if not same or np.count_nonzero(land != before) > MOST_CHANGED * before.sum():
@@ -261,7 +261,7 @@ def _refuse_history(case: Case) -> None:
         )
 
 
-def _changed(parts: Prepared, case: Case) -> Prepared:
+def _change_case(parts: Prepared, case: Case) -> Prepared:
     """Return another case on the same grid; sole and compliance stay where nothing makes others."""
     same = all(getattr(case, name) == getattr(parts.case, name) for name in _OF_THE_SOLE)
     return prepare_case(

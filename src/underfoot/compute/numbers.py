@@ -355,15 +355,15 @@ def contact_area(state: SoleState) -> float:
 
 def sole_name(case: Case) -> str:
     """Return a name of the geometry of the case's sole: those of one share its grid's error."""
-    return _named(case, "heel", "tread", "sole", "wear")
+    return _sole_key(case, "heel", "tread", "sole", "wear")
 
 
 def heel_name(case: Case) -> str:
     """Return a name of the case's sole without its tread: what shares the error of the film."""
-    return _named(case, "heel", "sole", "wear")
+    return _sole_key(case, "heel", "sole", "wear")
 
 
-def _named(case: Case, *parts: str) -> str:
+def _sole_key(case: Case, *parts: str) -> str:
     if case.shoe.outsole is not None:
         given, read = case.shoe.outsole, file_outsole(case)
         part = given.sha256, given.solid, given.region, given.region_length

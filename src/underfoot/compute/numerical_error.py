@@ -190,7 +190,7 @@ def numerical_errors(
         # cells along the sliding give the rims of lugs a peak that they don't have
         finer = columns if parts.sole.tread_depth.any() else max(CHECKED, columns)
         finely = replace(parts, case=case.replace("numerics.cells_along", finer))
-        return _compared(finely, numbers, progress)
+        return _grid_differences(finely, numbers, progress)
     if positions is None:
         return Message("not estimated with numerics.tread_positions = 1")
     grid, count, lost = {}, len(positions.places), positions.left_out
@@ -251,7 +251,7 @@ def errors_by_steps(
     return errors
 
 
-def _compared(
+def _grid_differences(
     parts: Prepared, numbers: Mapping[str, float], progress: Progress
 ) -> NumericalErrors | str:
     """Return the differences of ``numbers`` to the quick grid, and by its steps in time."""

@@ -29,10 +29,10 @@ def pictured_fields(
         map_angle: Shoe angle (rad) at which ``sole`` was made; it has rolled from there.
     """
     roll = contact.shoe_angle - map_angle
-    lowest = _rolled(sole, roll)[sole.inside].min()
+    lowest = _roll_sole(sole, roll)[sole.inside].min()
 
     def height(shape: SoleMap) -> Array:
-        return np.where(shape.inside, _rolled(shape, roll) - lowest - contact.approach, np.nan)
+        return np.where(shape.inside, _roll_sole(shape, roll) - lowest - contact.approach, np.nan)
 
     pressed = height(sole) + compliance.apply(contact.cell_load)
     variables: dict[str, Variable] = {
@@ -60,6 +60,6 @@ def pictured_fields(
     }
 
 
-def _rolled(sole: SoleMap, angle: float) -> Array:
+def _roll_sole(sole: SoleMap, angle: float) -> Array:
     """Return the height (m) over the floor, inf outside."""
     return np.where(sole.inside, rolled_height(sole.x, sole.clearance, angle, sole.joint), np.inf)

@@ -120,7 +120,7 @@ def case_places(case: Case, *, quick: bool) -> tuple[TreadPlace, ...]:
     hand = _hand(case)
     mirror = np.array([1, hand])
     origin = (np.array([landing_front(case), 0.0]) - begin @ periods) * mirror
-    ahead = _reduced(periods * mirror)
+    ahead = _reduce_periods(periods * mirror)
     lie = places(ahead, position_count(case, quick=quick), origin @ np.linalg.pinv(ahead))
     signs = (1, -1, -1, 1)
     return tuple(
@@ -129,7 +129,7 @@ def case_places(case: Case, *, quick: bool) -> tuple[TreadPlace, ...]:
     )
 
 
-def _reduced(periods: Array) -> Array:
+def _reduce_periods(periods: Array) -> Array:
     """Return periods of the same pattern whose mirror images have the mirrored ones."""
     first, *more = (each * (1 if tuple(each[::way]) > (0, 0) else -1)
                     for each, way in zip(np.round(periods, 12), (1, -1), strict=False))  # fmt: skip

@@ -288,7 +288,7 @@ class Result(Presentable):
                 )
             reserved = "format name status labels breaches assumptions provenance".split()
             scalars = {
-                name: _known(SourcedValue, entry)
+                name: _from_known_fields(SourcedValue, entry)
                 for name, entry in stored.items()
                 if name not in reserved and isinstance(entry, dict) and "value" in entry
             }
@@ -303,7 +303,7 @@ class Result(Presentable):
                 status=Status(stored["status"]["value"]),
                 breaches=tuple(map(Remark.stored, stored["breaches"])),
                 assumptions=tuple(map(Remark.stored, stored["assumptions"])),
-                provenance=_known(Provenance, provenance),
+                provenance=_from_known_fields(Provenance, provenance),
                 case_text=case_text,
             )
         except UnderfootError:
@@ -317,9 +317,9 @@ class Result(Presentable):
             ) from error
 
 
-def _known(cls: Any, entry: dict[str, Any]) -> Any:
+def _from_known_fields(cls: Any, entry: dict[str, Any]) -> Any:
     """Return an object of what it knows in an entry, which another version may have written."""
-    return cls(**{each.name: entry[each.name] for each in fields(cls) if each.name in entry})
+    return cls(**{field.name: entry[field.name] for field in fields(cls) if field.name in entry})
 
 
 def _write_text(path: Path, text: str) -> None:

@@ -115,10 +115,10 @@ def sole_map(
     sole = shoe.heel_map(shape, shoe_angle=angle, spacing=spacing)
     plan = case.shoe.heel
     if isinstance(plan, WholePlan):
-        sole = trim_map(_jointed(case, sole, plan.length), plan.reach, rolls(case))
+        sole = trim_map(_add_joint(case, sole, plan.length), plan.reach, rolls(case))
     return _with_cells(
         case,
-        _pressed(case, sole),
+        _press_slits(case, sole),
         lambda columns: heel_map(shape, shoe_angle=angle, spacing=spacing, columns=columns),
     )
 
@@ -168,7 +168,7 @@ def cells_along(case: Case, sole: SoleMap) -> int:
     return RESOLVED if flat else 1
 
 
-def _jointed(case: Case, sole: SoleMap, length: float) -> SoleMap:
+def _add_joint(case: Case, sole: SoleMap, length: float) -> SoleMap:
     """Return a whole sole of ``length`` (m) with its joint, where the motion rolls it."""
     if not np.ptp(rolls(case)):
         return sole
@@ -407,17 +407,17 @@ def _map_of_surface(case: Case, surface: SoleSurface, spacing: float, angle: flo
     assert case.shoe.outsole is not None  # file_surface refuses a case without one
     sole = surface_map(surface, shoe_angle=angle, spacing=spacing)
     if surface.length > WHOLE * file_outsole(case).whole_length:
-        sole = _jointed(case, sole, surface.length)
+        sole = _add_joint(case, sole, surface.length)
     sole = trim_map(sole, case.shoe.outsole.reach, rolls(case))
     check_load(case, sole)
     return _with_cells(
         case,
-        _pressed(case, sole),
+        _press_slits(case, sole),
         lambda columns: surface_map(surface, shoe_angle=angle, spacing=spacing, columns=columns),
     )
 
 
-def _pressed(case: Case, sole: SoleMap) -> SoleMap:
+def _press_slits(case: Case, sole: SoleMap) -> SoleMap:
     """Return the sole with its slits as the load closes them: the mean pressure of a first look."""
     if sole.slits is None:
         return sole

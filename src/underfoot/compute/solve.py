@@ -170,8 +170,8 @@ def _mean(numbers: Sequence[Numbers]) -> Numbers | None:
     """Return the means of numbers over places; None without any."""
     if not numbers:
         return None
-    names = set.intersection(*(set(each) for each in numbers))
-    return {name: float(np.mean([each[name] for each in numbers])) for name in names}
+    names = set.intersection(*(set(number) for number in numbers))
+    return {name: float(np.mean([number[name] for number in numbers])) for name in names}
 
 
 def film_spreads(
@@ -292,11 +292,11 @@ def average_positions(
 
     known = {TreadPlace(): place_numbers(parts, solution.contact)}
     if has_lugs(parts.case):
-        known |= _turned(parts, solution.contact)
+        known |= _turn_and_solve(parts, solution.contact)
     return tread_positions(parts.case, known, at_places, spacing=parts.spacing, quick=quick)
 
 
-def _turned(parts: Prepared, contact: SoleContact) -> dict[TreadPlace, Mapping[str, float]]:
+def _turn_and_solve(parts: Prepared, contact: SoleContact) -> dict[TreadPlace, Mapping[str, float]]:
     """Return the numbers of a contact that goes on in two steps with the shoe turned up and down.
 
     Empty where the steps can't be made, or the motion follows a history.

@@ -141,7 +141,7 @@ def odds_changes(less: float, more: float, normal: Array) -> Array:
 
 def sum_of_draws(draws: Mapping[str, Mapping[str, Array]], name: str) -> Array | float:
     """Return the sum of the draws of a name over all paths; 0 without any."""
-    return sum((each[name] for each in draws.values() if name in each), 0.0)
+    return sum((draw[name] for draw in draws.values() if name in draw), 0.0)
 
 
 def exactly(case: Case, path: str) -> SourcedValue:
@@ -215,7 +215,7 @@ def solved_effects(
     own = stepped(case)
     solved: dict[str, list[Numbers | None]] = {}
     cases = {
-        stated_spread.path: [_changed(case, change) for change in stated_spread.changes]
+        stated_spread.path: [_change_case(case, change) for change in stated_spread.changes]
         for stated_spread in spreads
     }
     for path, ends in cases.items():
@@ -244,7 +244,7 @@ def solved_effects(
     return StatedEffects(tuple(effects), tuple(left_out))
 
 
-def _changed(case: Case, change: Mapping[str, object]) -> Case | None:
+def _change_case(case: Case, change: Mapping[str, object]) -> Case | None:
     """Return a changed case; None beyond what is physical, or against another number of it."""
     try:
         return case.replace(change)

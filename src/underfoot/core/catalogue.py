@@ -111,7 +111,7 @@ class Catalogue(Presentable):
                 ``from`` that leads nowhere or in a circle.
         """
         chosen = tuple(str(Path(folder)) for folder in folders)
-        return _loaded(chosen, tuple(map(_content, (*chosen, *_offered_folders()))))
+        return _load_folders(chosen, tuple(map(_content, (*chosen, *_offered_folders()))))
 
     def __repr__(self) -> str:
         folders = f", with {', '.join(self.folders)}" if self.folders else ""
@@ -162,7 +162,7 @@ class Catalogue(Presentable):
         entries = [entry for (_, known), entry in self.entries.items() if known == name]
         if not entries:
             raise unknown_name("catalogue entry", name, {known for _, known in self.entries})
-        return "\n\n".join(map(_described, entries))
+        return "\n\n".join(map(_describe_entry, entries))
 
 
 def catalogue(*folders: Path | str) -> Catalogue:
@@ -193,7 +193,7 @@ def _built_in_tables() -> _Tables:
 
 
 @lru_cache(maxsize=16)
-def _loaded(folders: tuple[str, ...], content: tuple[tuple[Any, ...], ...]) -> Catalogue:
+def _load_folders(folders: tuple[str, ...], content: tuple[tuple[Any, ...], ...]) -> Catalogue:
     """Read folders once for each ``content`` of their files."""
     raw = dict(_built_in_tables())
     for folder in _offered_folders():
@@ -309,7 +309,7 @@ def _resolve(
     return done[kind, name]
 
 
-def _described(entry: Entry) -> str:
+def _describe_entry(entry: Entry) -> str:
     lines = [f"{entry.kind} {entry.name}: {entry.title}"]
     if entry.note:
         lines.append(entry.note)

@@ -14,13 +14,15 @@ from .remark import Message
 
 def positive(value: float, where: str, unit: str = "") -> float:
     """Return ``value`` as a float; refuse one that is not a finite number above 0."""
-    return _bounded(value, value > 0, "is not positive", "a finite number above {}", where, unit)
+    return _check_bound(
+        value, value > 0, "is not positive", "a finite number above {}", where, unit
+    )
 
 
 def not_negative(value: float, where: str, unit: str = "") -> float:
     """Return ``value`` as a float; refuse one that is not a finite number of at least 0."""
     what = "is negative or not finite"
-    return _bounded(value, value >= 0, what, "a finite number, {} or more", where, unit)
+    return _check_bound(value, value >= 0, what, "a finite number, {} or more", where, unit)
 
 
 def between(value: float, low: float, high: float, where: str, allowed: str = "") -> float:
@@ -94,7 +96,9 @@ def poisson_ratio(value: float, where: str = "poisson_ratio") -> float:
     return float(value)
 
 
-def _bounded(value: float, inside: bool, what: str, allowed: str, where: str, unit: str) -> float:
+def _check_bound(
+    value: float, inside: bool, what: str, allowed: str, where: str, unit: str
+) -> float:
     if not (math.isfinite(value) and inside):
         allowed = allowed.format(f"0 {unit}".rstrip())
         raise InputError(f"{f'{value:g} {unit}'.rstrip()} {what}", where=where, allowed=allowed)

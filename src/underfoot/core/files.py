@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
-from .errors import InputError
+from .errors import InputError, nearest_match
 from .remark import Message
 from .typed import float_of_text
 
@@ -163,9 +163,17 @@ def checksum(path: Path | str) -> str:
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """Return the content of a TOML file; InputError where it is none."""
+    """Return the content of a TOML file; InputError where it is none, or not there.
+
+    A byte-order mark, as some editors write it, is no part of the text.
+    """
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"), parse_float=float_of_text)
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"), parse_float=float_of_text)
+    except FileNotFoundError as error:
+        near = [other.name for other in path.parent.glob("*.toml")] if path.parent.is_dir() else []
+        raise InputError(
+            Message("there is no file {path}", path=path), nearest=nearest_match(path.name, near)
+        ) from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(
             Message("is no TOML file ({error})", error=error), where=str(path)

@@ -145,7 +145,7 @@ class _Walk:
             self._list("method", (part.__func__, part.__self__))
         elif isinstance(part, CodeType):
             self._list("code", (part.co_code, part.co_consts, part.co_names))
-        elif (inner := _wrapped(part)) is not None:
+        elif (inner := _inner_function(part)) is not None:
             self.feed(inner)
         else:
             self._object(part)
@@ -175,7 +175,7 @@ class _Walk:
     def _in_code(self, value: Any) -> Any:
         """Return a value that code refers to; of an object of a library its class alone."""
         plain = (*_PLAIN, *_KINDS, float, np.generic, Enum, type, FunctionType, ModuleType)
-        if isinstance(value, plain) or _wrapped(value) is not None:
+        if isinstance(value, plain) or _inner_function(value) is not None:
             return value
         return type(value) if self._told_by_version(type(value)) else value
 
@@ -223,7 +223,7 @@ class _Walk:
         top = name.partition(".")[0]
         if top == OWN or (top in sys.stdlib_module_names and top != "__main__"):
             return True
-        if not _required() & set(map(_plain, _distributions(top))):
+        if not _required_packages() & set(map(_plain, _distributions(top))):
             return False
         self._text("library", f"{top} {_versions(top)}")
         return True
@@ -243,12 +243,12 @@ def _content(cell: Any) -> Any:
 
 def _names(code: CodeType) -> Iterable[str]:
     yield from code.co_names
-    for each in code.co_consts:
-        if isinstance(each, CodeType):
-            yield from _names(each)
+    for co_const in code.co_consts:
+        if isinstance(co_const, CodeType):
+            yield from _names(co_const)
 
 
-def _wrapped(part: Any) -> Any:
+def _inner_function(part: Any) -> Any:
     """Return the function within a cached or compiled one, else None."""
     inner = getattr(part, "__wrapped__", None) if isinstance(part, _CACHED) else None
     return inner or getattr(part, "py_func", None)
@@ -257,7 +257,7 @@ def _wrapped(part: Any) -> Any:
 def attributes(part: Any) -> dict[str, Any]:
     """Return what an object holds, without what is computed from that when it is asked for."""
     slots = [vars(base).get("__slots__", ()) for base in type(part).__mro__]
-    names = [name for each in slots for name in ([each] if isinstance(each, str) else each)]
+    names = [name for slot in slots for name in ([slot] if isinstance(slot, str) else slot)]
     held = {name: getattr(part, name) for name in names if hasattr(part, name)}
     held.pop("__weakref__", None)
     return _without_lazy(type(part), {**held, **getattr(part, "__dict__", {})})
@@ -313,7 +313,7 @@ def _versions(top: str) -> str:
 
 
 @cache
-def _required() -> frozenset[str]:
+def _required_packages() -> frozenset[str]:
     """Return the packages that this one requires: the version of one says its code."""
     try:
         lines = metadata.requires(OWN) or []

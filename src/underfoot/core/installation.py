@@ -39,7 +39,7 @@ def installation() -> list[tuple[str, str]]:
         ("underfoot", package_version("underfoot")),
         ("python", f"{platform.python_version()} ({sys.executable})"),
         ("system", f"{platform.system()} {platform.machine()}, {os.cpu_count()} processors"),
-        *((name, _required(name)) for name in _dependencies()),
+        *((name, _required_version(name)) for name in _dependencies()),
         *(_optional(*row) for row in _OPTIONAL),
         # measured on the work shoe in glycerol, grid of 1 mm, one thread
         ("sparse solver", back_end() + ("" if mkl_library() else _GAIN)),
@@ -65,7 +65,7 @@ def _dependencies() -> list[str]:
     return [re.split(r"[^\w.-]", line, maxsplit=1)[0] for line in needed]
 
 
-def _required(name: str) -> str:
+def _required_version(name: str) -> str:
     """Return the version; a package without one may still load, as in a frozen application."""
     version = package_version(name)
     if version == UNKNOWN and find_spec(name.replace("-", "_")) is None:

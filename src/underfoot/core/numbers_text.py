@@ -33,7 +33,7 @@ def any_lost(rows: Iterable[str]) -> bool:
     return any(float(match[0]) == 0.0 for match in small)
 
 
-def _closed(cell: str) -> str:
+def _close_gaps(cell: str) -> str:
     """Return a cell without the gaps between thousands."""
     return cell if _NO_GROUP.match(cell) else _GAP.sub("", cell)
 
@@ -52,7 +52,7 @@ class NumberForm:
         '1075.5'
         """
         cell = cell.strip()
-        match = _NUMBER.fullmatch(_closed(plain_signs(cell)))
+        match = _NUMBER.fullmatch(_close_gaps(plain_signs(cell)))
         if match is None:
             return cell
         sign, body, exponent = match.group(1), match.group(2), match.group(3) or ""
@@ -95,7 +95,7 @@ class _Evidence:
         return found
 
     def _add(self, cell: str) -> None:
-        closed = _closed(cell)
+        closed = _close_gaps(cell)
         match = _NUMBER.fullmatch(closed)
         if match is None:
             return
@@ -163,7 +163,7 @@ def _form(seen: _Evidence, decimals: set[str], groups: set[str], where: str) -> 
         if _marks_decimals(seen, mark, decimals, groups, example, where):
             return NumberForm(mark, seen.gaps)
         return NumberForm(_OTHER[mark], True)
-    raise _undecided(", ".join(f'"{cell}"' for cell in seen.open.values()), where)
+    raise _undecided_error(", ".join(f'"{cell}"' for cell in seen.open.values()), where)
 
 
 def _marks_decimals(
@@ -176,10 +176,10 @@ def _marks_decimals(
         return False
     if not decimals and (mark == "." or seen.long_whole):
         return True
-    raise _undecided(f'"{example}"', where)
+    raise _undecided_error(f'"{example}"', where)
 
 
-def _undecided(examples: str, where: str) -> DataError:
+def _undecided_error(examples: str, where: str) -> DataError:
     return DataError(
         Message(
             "{examples} can be a decimal number or one with its thousands marked, a "

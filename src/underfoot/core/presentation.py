@@ -256,7 +256,7 @@ def shows_interval(name: str, scalar: SourcedValue) -> bool:
     if scalar.value is None or scalar.interval is None:
         return False
     wide = name in PROBABILITIES and is_wide(scalar.interval)
-    return wide or _skewed(scalar.value, scalar.interval)
+    return wide or _is_skewed(scalar.value, scalar.interval)
 
 
 def interval_text(name: str, scalar: SourcedValue) -> str:
@@ -279,7 +279,7 @@ def is_wide(interval: tuple[float, float] | None) -> bool:
     return interval is not None and interval[1] - interval[0] > WIDE
 
 
-def _skewed(value: float, interval: tuple[float, float]) -> bool:
+def _is_skewed(value: float, interval: tuple[float, float]) -> bool:
     """Return True where a single standard deviation would misrepresent the interval."""
     below, above = value - interval[0], interval[1] - value
     return abs(above - below) > SKEWED * (interval[1] - interval[0])

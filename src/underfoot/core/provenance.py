@@ -7,7 +7,6 @@ from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from typing import Any
 
-from .deprecation import renamed_member
 from .fourier import fourier_library
 from .identity import content_hash, package_version, program_hash
 from .sparse import back_end
@@ -61,5 +60,3 @@ class Provenance:
     def to_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
         return asdict(self)
-
-    as_dict = renamed_member("as_dict", "to_dict", gone="0.3")

@@ -132,9 +132,14 @@ def broken_offers() -> Iterator[str]:
 def all_offers() -> tuple[Offer, ...]:
     """Return what the packages on Python's path offer; ``all_offers.cache_clear`` looks again."""
     offers = {
-        Offer(entry.group.removeprefix(PREFIX), entry.name, entry.value, each.name or "a package")
-        for each in metadata.distributions()
-        for entry in each.entry_points
+        Offer(
+            entry.group.removeprefix(PREFIX),
+            entry.name,
+            entry.value,
+            distribution.name or "a package",
+        )
+        for distribution in metadata.distributions()
+        for entry in distribution.entry_points
         if entry.group.startswith(PREFIX)
     }
     return tuple(sorted(offers, key=str))

@@ -71,7 +71,7 @@ class Message(str):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return what makes an equal one, its text as it is: for copies and other processes."""
-        return _copied, (type(self), str(self), self._parts())
+        return _copy_message, (type(self), str(self), self._parts())
 
     def _parts(self) -> dict[str, Any]:
         return {"code": self.code, "values": self.values}
@@ -305,7 +305,7 @@ def _of_page(value: Any, spec: str) -> Any:
     return _FIELDS.format_field(value, "" if "|" in spec or isinstance(value, str) else spec)
 
 
-def _copied(kind: type[Message], text: str, parts: Mapping[str, Any]) -> Message:
+def _copy_message(kind: type[Message], text: str, parts: Mapping[str, Any]) -> Message:
     line = str.__new__(kind, text)
     for name, value in parts.items():
         setattr(line, name, value)

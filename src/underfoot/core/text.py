@@ -81,12 +81,12 @@ def cells_of(line: str, separator: str | None) -> list[str]:
         return [cell.strip() for cell in line.split(separator)]
     if separator is None:
         found = re.findall(r'"[^"]*"(?=\s|$)|\S+', line)
-        return [_unquoted(cell) for cell in found]
+        return [_strip_quotes(cell) for cell in found]
     row = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
     return [cell.strip() for cell in row]
 
 
-def _unquoted(cell: str) -> str:
+def _strip_quotes(cell: str) -> str:
     return cell[1:-1].strip() if len(cell) > 1 and cell[0] == cell[-1] == '"' else cell
 
 

@@ -9,6 +9,7 @@ import re
 import unicodedata
 
 from .errors import InputError
+from .remark import Message
 
 MINUS = "-\u2212\u2012\u2013\u2010\u2011\ufe63\uff0d"
 """Signs that people write for a minus: those of keyboards, of typesetting, of spreadsheets."""
@@ -72,7 +73,10 @@ def float_of_text(plain: str) -> float:
     """
     number = float(plain)
     if is_lost(number, plain):
-        raise InputError(f"{plain} is too small to be told from 0", allowed="0, or a larger number")
+        raise InputError(
+            Message("{plain} is too small to be told from 0", plain=plain),
+            allowed="0, or a larger number",
+        )
     return number
 
 
@@ -94,7 +98,7 @@ def _vulgar(text: str) -> str:
 
 def _decimal(digits: str, text: str, usual: str) -> str | None:
     """Return digits with a decimal point and no thousands, None for what is no number."""
-    signs = [each for each in digits if not each.isdigit()]
+    signs = [digit for digit in digits if not digit.isdigit()]
     if not signs:
         return digits
     last = signs[-1]
@@ -108,14 +112,14 @@ def _decimal(digits: str, text: str, usual: str) -> str | None:
                     remedy="Write it without thousands, with the decimal sign of the page",
                 )
             return f"{whole or 0}.{part or 0}"
-        if len(set(signs[:-1])) == 1 and _grouped(whole, signs[0]):
+        if len(set(signs[:-1])) == 1 and _is_grouped(whole, signs[0]):
             return f"{whole.replace(signs[0], '')}.{part or 0}"
         return None
-    if len(set(signs)) == 1 and _grouped(digits, last):
+    if len(set(signs)) == 1 and _is_grouped(digits, last):
         return digits.replace(last, "")
     return None
 
 
-def _grouped(digits: str, sign: str) -> bool:
+def _is_grouped(digits: str, sign: str) -> bool:
     """Return whether digits stand in thousands."""
     return re.fullmatch(rf"[1-9]\d{{0,2}}(?:{re.escape(sign)}\d{{3}})+", digits) is not None

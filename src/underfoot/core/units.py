@@ -7,6 +7,7 @@ from functools import cache
 from typing import Any
 
 from .errors import InputError, nearest_match
+from .remark import Message
 from .typed import split_quantity
 
 _EXAMPLES = {
@@ -115,7 +116,9 @@ def to_si(given: object, unit: str, *, where: str, usual: str = "", comma: bool 
     example = f"5 {usual}" if usual else _EXAMPLES.get(unit, f"1 {unit}")
     if isinstance(given, bool):
         raise InputError(
-            f"{given} is not a number", where=where, allowed=f'for example "{example}"'
+            Message("{given} is not a number", given=given),
+            where=where,
+            allowed=f'for example "{example}"',
         )
     if isinstance(given, int | float):
         if unit == "1":
@@ -123,7 +126,9 @@ def to_si(given: object, unit: str, *, where: str, usual: str = "", comma: bool 
         raise _no_unit(given, unit, where, example)
     if not isinstance(given, str):
         raise InputError(
-            f"{given!r} is not a quantity", where=where, allowed=f'text such as "{example}"'
+            Message("{given} is not a quantity", given=repr(given)),
+            where=where,
+            allowed=Message('text such as "{example}"', example=example),
         )
     number, text = _split(given, where, comma, example)
     text = text or usual
@@ -187,7 +192,7 @@ def refuse_percent(given: object, *, where: str) -> None:
     """
     if _in_percent(given):
         raise InputError(
-            f"{given} can be of the value or in its unit",
+            Message("{given} can be of the value or in its unit", given=given),
             where=where,
             allowed="the standard deviation in the unit of the value",
         )
@@ -218,10 +223,10 @@ def si_unit(given: str, *, where: str) -> str:
 
 def _no_unit(given: object, unit: str, where: str, example: str) -> InputError:
     return InputError(
-        f"{given} has no unit",
+        Message("{given} has no unit", given=given),
         where=where,
-        allowed=f"a number with a unit of {unit}",
-        remedy=f'Write it as text with its unit, for example "{example}"',
+        allowed=Message("a number with a unit of {unit}", unit=unit),
+        remedy=Message('Write it as text with its unit, for example "{example}"', example=example),
     )
 
 
@@ -257,10 +262,10 @@ def _convert(
         return math.radians(number)
     if unit == "1":
         raise InputError(
-            f'"{given}" has a unit, this quantity has none',
+            Message('"{given}" has a unit, this quantity has none', given=given),
             where=where,
             allowed=f'for example "{example}"',
-            remedy=f'Write {number:g}, without "{text}"',
+            remedy=Message('Write {number:g}, without "{text}"', number=number, text=text),
         )
     import pint
 
@@ -276,7 +281,9 @@ def _convert(
         ) from error
     target = {"K": "kelvin"}.get(unit, unit)
     refused = InputError(
-        f'"{given}" is not a value in {shown}', where=where, allowed=f'for example "{example}"'
+        Message('"{given}" is not a value in {shown}', given=given, shown=shown),
+        where=where,
+        allowed=f'for example "{example}"',
     )
     try:
         value = float(quantity.to(target).magnitude)
@@ -301,5 +308,7 @@ def _convert(
 
 def _finite(value: float, given: object, where: str) -> float:
     if not math.isfinite(value):
-        raise InputError(f"{given} is not finite", where=where, allowed="a finite number")
+        raise InputError(
+            Message("{given} is not finite", given=given), where=where, allowed="a finite number"
+        )
     return value

@@ -3,7 +3,6 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from .deprecation import renamed_member
 from .errors import DataError
 from .remark import Message
 from .unit_text import display
@@ -55,8 +54,6 @@ class SourcedValue:
     def to_dict(self) -> dict[str, Any]:
         """Return plain data for JSON and CSV."""
         return {name: getattr(self, name) for name in self.__slots__}
-
-    as_dict = renamed_member("as_dict", "to_dict", gone="0.3")
 
     def scaled(self, factor: float) -> "SourcedValue":
         """Return the value, its uncertainties and its interval times a factor, 0 or more."""

@@ -71,7 +71,7 @@ class Effects(Presentable):
     def headline(self) -> tuple[str, ...]:
         """Return the most effective input and the basis."""
         first = int(np.argmax(self.total))
-        value = _shown(self.total[first], self.total_half[first])
+        value = _effect_text(self.total[first], self.total_half[first])
         return (
             Message(
                 "{output} depends most on {path} ({head} {value}).",
@@ -89,8 +89,8 @@ class Effects(Presentable):
         rows = [
             (
                 self.paths[k],
-                _shown(float(self.total[k]), float(self.total_half[k])),
-                _shown(float(self.main[k]), float(self.main_half[k])),
+                _effect_text(float(self.total[k]), float(self.total_half[k])),
+                _effect_text(float(self.main[k]), float(self.main_half[k])),
             )
             for k in order
         ]
@@ -98,7 +98,7 @@ class Effects(Presentable):
         return Table(title, ("Input", self.heads[1], self.heads[0]), rows)
 
 
-def _shown(value: float, half: float) -> str:
+def _effect_text(value: float, half: float) -> str:
     return f"{value:.3g} ± {half:.2g}" if np.isfinite(half) else f"{value:.3g}"
 
 

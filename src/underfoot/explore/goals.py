@@ -93,7 +93,7 @@ class Goal:
 
         "Over conditions" takes the mean over draws first, "over draws" the mean over conditions.
         """
-        chosen = outputs[:, _chosen(states, self.within)]
+        chosen = outputs[:, _states_within(states, self.within)]
         if self.statistic != "mean" and self.over == "conditions":
             chosen = chosen.mean(axis=(2, 3))
         elif self.statistic != "mean" and self.over == "draws":
@@ -107,7 +107,7 @@ class Goal:
 
     def numbers(self, states: Sequence[Condition], draws: int) -> int:
         """Return how many numbers of a design the statistic is of, the law's draws left out."""
-        each = {"conditions": len(_chosen(states, self.within)), "draws": draws}
+        each = {"conditions": len(_states_within(states, self.within)), "draws": draws}
         return math.prod(each[name] for name in self.over.split(" and "))
 
     def error(
@@ -118,7 +118,7 @@ class Goal:
         Runs of one design share tread and grid, so no mean over them makes it smaller. nan where a
         run states none.
         """
-        chosen = _chosen(states, self.within)
+        chosen = _states_within(states, self.within)
         runs = (record for (state, _), record in records.items() if state in chosen)
         return float(np.mean([record.errors.get(self.output, np.nan) for record in runs]))
 
@@ -186,7 +186,7 @@ class WearLife:
     def values(self, outputs: Array, states: Sequence[Condition]) -> Array:
         """Return the lives (designs,) of outputs (designs, conditions, draws, law's draws)."""
         groups: dict[str, dict[float, Array]] = {}
-        for number in _chosen(states, self.requirement.goal.within):
+        for number in _states_within(states, self.requirement.goal.within):
             changes = dict(states[number].changes)
             wear = float(changes.pop(WEAR))
             values = self._bounded.values(outputs[:, [number]], [Condition((), {})])
@@ -244,7 +244,7 @@ def output_array(
     return np.array(rows).reshape(len(conditions), len(draws), width)
 
 
-def _chosen(states: Sequence[Condition], within: Sequence[str]) -> list[int]:
+def _states_within(states: Sequence[Condition], within: Sequence[str]) -> list[int]:
     return [k for k, state in enumerate(states) if set(within) <= set(state.parts)]
 
 
@@ -283,7 +283,7 @@ def read_goal(
     if over not in OVER:
         raise unknown_name("word after over", over, OVER)
     words = sorted({part for state in states for part in state.parts})
-    within = tuple(_listed(clauses.get("in", ""), words))
+    within = tuple(_split_list(clauses.get("in", ""), words))
     for word in within:
         if word not in words:
             raise unknown_name("condition", word, words)
@@ -293,12 +293,12 @@ def read_goal(
                 Message("{word} stands under several conditions", word=word),
                 remedy="Write one in another unit",
             )
-    if not _chosen(states, within):
+    if not _states_within(states, within):
         raise InputError(Message("no condition is {within}", within=" and ".join(within)))
     return Goal(output, units[output], statistic, share, over, within)
 
 
-def _listed(text: str, names: Sequence[str]) -> Iterator[str]:
+def _split_list(text: str, names: Sequence[str]) -> Iterator[str]:
     """Yield the parts of a list with commas, of which a name may hold some too."""
     parts = [part.strip() for part in text.split(",") if part.strip()]
     while parts:
@@ -346,7 +346,7 @@ def check_agreement(require: Sequence[Requirement]) -> None:
 
 
 def _life(requirement: Requirement, states: Sequence[Condition]) -> WearLife:
-    states = [states[k] for k in _chosen(states, requirement.goal.within)]
+    states = [states[k] for k in _states_within(states, requirement.goal.within)]
     wears = {state.changes.get(WEAR) for state in states}
     if None in wears or len(wears) < 2:
         raise InputError(

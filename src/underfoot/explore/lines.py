@@ -127,7 +127,7 @@ class NewerFormat(DataError):
 
     def __init__(self, version: int) -> None:
         super().__init__(
-            f"the study was written by a newer version (format {version})",
+            Message("the study was written by a newer version (format {version})", version=version),
             allowed=Message("format {format} or older", format=FORMAT),
             remedy="Update underfoot, or run the study in another folder",
         )

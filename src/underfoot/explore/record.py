@@ -69,7 +69,7 @@ class CaseJob:
     def from_line(cls, text: str | bytes) -> CaseJob:
         """Return the job of a line."""
         plain = json.loads(text)
-        return cls(**{**_known(cls, plain), "point": tuple(plain["point"])})
+        return cls(**{**_known_fields(cls, plain), "point": tuple(plain["point"])})
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,7 +159,7 @@ class Record:
         packed = base64.b64decode(one) if plain["format"] == 1 else draws(*one)
         plain |= {"draws": np.frombuffer(packed, "<f4").astype(float)}
         plain |= {"ending": Ending(plain["ending"]), "breaches": tuple(plain["breaches"])}
-        return cls(**_known(cls, plain))
+        return cls(**_known_fields(cls, plain))
 
 
 def draws_place(line: bytes) -> tuple[int, int, int]:
@@ -168,6 +168,6 @@ def draws_place(line: bytes) -> tuple[int, int, int]:
     return int(first), int(count), int(check)
 
 
-def _known(kind: Any, plain: Mapping[str, Any]) -> dict[str, Any]:
+def _known_fields(kind: Any, plain: Mapping[str, Any]) -> dict[str, Any]:
     """Return what a class has a field for: a later program of this format may have written more."""
     return {one.name: plain[one.name] for one in fields(kind) if one.name in plain}

@@ -117,7 +117,7 @@ class Records(Mapping[str, Record]):
         """
         with os.scandir(self.folder) as entries:
             files = sorted(entries, key=lambda one: (not one.name.startswith(PACKED), one.name))
-        if self._sizes.keys() - {one.name for one in files}:  # packed: places are others now
+        if self._sizes.keys() - {file.name for file in files}:  # packed: places are others now
             self.__init__(self.folder)
         for one in files:
             path = Path(one.path)
@@ -221,7 +221,7 @@ class Records(Mapping[str, Record]):
         with self._opened(path) as (line_at, draws_at):
             body = line_at(place & AT)
             if body is None:
-                raise _damaged(path)
+                raise _damage_error(path)
             return Record.from_line(body, draws_at)
 
     @contextmanager
@@ -244,7 +244,7 @@ class Records(Mapping[str, Record]):
                 beside().seek(first)
                 packed = beside().read(4 * count)
                 if crc32(packed) != check:
-                    raise _damaged(_draws_of(path))
+                    raise _damage_error(_draws_of(path))
                 return packed
 
             yield partial(line_of, stream), draws_at
@@ -261,10 +261,10 @@ def _packed_columns(path: Path) -> tuple[list[bytes], bytes]:
     except FileNotFoundError:
         raise
     except (OSError, ValueError, KeyError, BadZipFile) as error:
-        raise _damaged(path) from error
+        raise _damage_error(path) from error
 
 
-def _damaged(path: Path) -> DataError:
+def _damage_error(path: Path) -> DataError:
     return DataError(
         "a finished case is damaged",
         where=str(path),

@@ -59,12 +59,12 @@ def scan_cases(
         DataError: Draws that are damaged.
     """
     try:
-        return _scanned(records, outputs, draws)
+        return _scan_records(records, outputs, draws)
     except FileNotFoundError:  # packed since the last look
-        return _scanned(records.look(), outputs, draws)
+        return _scan_records(records.look(), outputs, draws)
 
 
-def _scanned(records: Records, outputs: Collection[str], draws: bool) -> DesignScan:
+def _scan_records(records: Records, outputs: Collection[str], draws: bool) -> DesignScan:
     keys = list(records)
     case, numbers, errors = (
         {name: np.full(len(keys) + 1, np.nan) for name in names}

@@ -179,9 +179,12 @@ class Store:
             raise InputError(
                 "was changed after its designs were set",
                 where=str(file),
-                remedy="Copy it to where your studies are and give underfoot study run "
-                f"COPY.toml --out {self.folder}: designs are set anew, and cases that both have "
-                "are kept",
+                remedy=Message(
+                    "Copy it to where your studies are and give underfoot study run "
+                    "COPY.toml --out {folder}: designs are set anew, and cases that "
+                    "both have are kept",
+                    folder=self.folder,
+                ),
             )
         return plan
 
@@ -339,7 +342,7 @@ class Store:
         path, claim = self.folder / "lead.lock", self.folder / "lead.claim"
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
         try:
-            locked = _locked(descriptor)
+            locked = _lock_file(descriptor)
             if locked is False or (locked is None and not self._claimed(claim)):
                 yield False
                 return
@@ -590,7 +593,7 @@ def _cell(value: Any) -> Any:
     return harmless(value) if isinstance(value, str) else value
 
 
-def _locked(descriptor: int) -> bool | None:
+def _lock_file(descriptor: int) -> bool | None:
     """Return whether a file is locked for this process; None where it can't be."""
     try:
         import fcntl

@@ -158,7 +158,7 @@ def read_plan(
             reader.refuse_if(
                 goal.numbers(states, len(draws)) < 2,
                 "outputs",
-                f"{goal} is a statistic of one number",
+                Message("{goal} is a statistic of one number", goal=goal),
                 remedy="Write several [conditions], or draws of what is [uncertain]",
             )
     budget, grid = method.budget, method.design == "grid"
@@ -168,7 +168,9 @@ def read_plan(
         budget is not None and budget < least,
         "method.budget",
         f"a budget of {budget} runs is less than {takes}",
-        allowed=f"from {least} ({'designs times ' * grid}conditions times draws)",
+        allowed=Message(
+            "from {least} ({grid}conditions times draws)", least=least, grid="designs times " * grid
+        ),
     )
     cases = plan.designs * plan.cases_per_design
     low, high = (
@@ -212,7 +214,11 @@ def _on_finer_grid(
     if not changes:
         return case, ()
     settings = ", ".join(f"{name} = {value * 1e3:g} mm" for name, value in changes.items())
-    words = f"The narrowest lug or channel ({narrowest * 1e3:g} mm) needs a finer grid: {settings}"
+    words = Message(
+        "The narrowest lug or channel ({narrowest:g} mm) needs a finer grid: {settings}",
+        narrowest=narrowest * 1000.0,
+        settings=settings,
+    )
     try:
         return case.replace(changes), (f"{words}.",)
     except InputError as error:
@@ -237,7 +243,7 @@ def _common_draws(
     return rows
 
 
-def _listed(given: Any) -> Sequence[Any]:
+def _as_list(given: Any) -> Sequence[Any]:
     return given if isinstance(given, list | tuple) else [given]
 
 
@@ -394,7 +400,7 @@ class _Reader:
         """Return every combination of the conditions; one without changes where none are given."""
         choices = []
         for name, given in self.table("conditions").items():
-            path, texts = ALIASES.get(name, name), _listed(given)
+            path, texts = ALIASES.get(name, name), _as_list(given)
             choice = self.attempt(f"conditions.{name}", read_choice, path, texts, known)
             if choice is not None:
                 choices.append([(path, *pair) for pair in zip(choice.options, texts, strict=True)])
@@ -409,7 +415,7 @@ class _Reader:
         """Return the condition of each reading, and what was measured in it."""
         readings = [
             self.attempt(f"reading[{number}]", _reading, one, f"reading {number}", known)
-            for number, one in enumerate(_listed(self.plain["reading"]), start=1)
+            for number, one in enumerate(_as_list(self.plain["reading"]), start=1)
         ]
         good = list(filter(None, readings))
         return tuple(state for state, _ in good), tuple(reading for _, reading in good)
@@ -425,7 +431,7 @@ class _Reader:
         def read(name: str, function: Callable[..., Any], *more: Any) -> tuple[Any, ...]:
             goals = [
                 self.attempt(f"outputs.{name}[{k}]", function, text, UNITS, states, *more)
-                for k, text in enumerate(_listed(table.get(name, [])))
+                for k, text in enumerate(_as_list(table.get(name, [])))
             ]
             return tuple(filter(None, goals))
 

@@ -190,7 +190,7 @@ class Model:
         lengths = np.exp(self.theta[4:])
         apart: Any = cdist(first / lengths, second / lengths)
         return (
-            linear * (1 + _centred(first) @ _centred(second).T)
+            linear * (1 + _centre(first) @ _centre(second).T)
             + quadratic * _products(first) @ _products(second).T
             + matern * _matern(math.sqrt(5) * apart)
             + self.between * first[:, -1:] @ second[:, -1:].T
@@ -198,7 +198,7 @@ class Model:
 
     def _variance(self, features: Array) -> Array:
         linear, quadratic, matern = _amplitudes(self.form, self.theta)
-        first, second = (np.sum(of(features) ** 2, axis=1) for of in (_centred, _products))
+        first, second = (np.sum(of(features) ** 2, axis=1) for of in (_centre, _products))
         return (
             linear * (1 + first) + quadratic * second + matern + self.between * features[:, -1] ** 2
         )
@@ -218,7 +218,7 @@ def _most_probable(
     starts: Sequence[Array],
 ) -> Array:
     """Return the hyperparameters of the highest posterior density, from the best of some starts."""
-    linear = 1 + _centred(features) @ _centred(features).T
+    linear = 1 + _centre(features) @ _centre(features).T
     quadratic = _products(features) @ _products(features).T
     apart = 5 * (features.T[:, :, None] - features.T[:, None, :]) ** 2
     centre, width = prior.T
@@ -261,13 +261,13 @@ def _matern(distance: Array) -> Array:
     return (1 + distance + distance**2 / 3) * np.exp(-distance)
 
 
-def _centred(features: Array) -> Array:
+def _centre(features: Array) -> Array:
     return 2.0 * features - 1.0
 
 
 def _products(features: Array) -> Array:
     """Return (n, terms) squares and products of the features from -1 to 1."""
-    centred = _centred(features)
+    centred = _centre(features)
     first, second = np.triu_indices(centred.shape[1])
     return centred[:, first] * centred[:, second]
 

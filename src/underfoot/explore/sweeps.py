@@ -105,7 +105,9 @@ def _ran(
     progress: Progress,
 ) -> StudyResult:
     tree = {
-        name: {key: _written(name, key, value) for key, value in table.items() if value is not None}
+        name: {
+            key: _file_value(name, key, value) for key, value in table.items() if value is not None
+        }
         for name, table in tables.items()
     }
     text = toml.toml_text({name: table for name, table in tree.items() if table})
@@ -118,7 +120,7 @@ def _ran(
         return result
 
 
-def _written(section: str, path: str, value: Any) -> Any:
+def _file_value(section: str, path: str, value: Any) -> Any:
     """Return what is varied as a study file writes it."""
     if section in ("outputs", "method") or isinstance(value, str):
         return value

@@ -61,7 +61,7 @@ def patir_cheng_pressure_factors(
     )
     gamma = checked_anisotropy(anisotropy)
     along, across = (
-        between_gammas(lambda known: _tabulated(ratio, known), TABLE, value)
+        between_gammas(lambda known: _fitted_factor(ratio, known), TABLE, value)
         for value in (gamma, 1 / gamma)
     )
     return along, across
@@ -106,7 +106,7 @@ def checked_anisotropy(anisotropy: float) -> float:
     return gamma
 
 
-def _tabulated(ratio: Array, gamma: float) -> Array:
+def _fitted_factor(ratio: Array, gamma: float) -> Array:
     c, r = TABLE[gamma]
     return 1 - c * np.exp(-r * ratio) if gamma <= 1 else 1 + c * ratio**-r
 

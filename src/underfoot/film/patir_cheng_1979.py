@@ -47,7 +47,7 @@ def patir_cheng_shear_factor(gap: ArrayLike, rq: float, *, anisotropy: float = 1
     """
     ratio = np.maximum(positive_array(gap, "gap") / positive(rq, "rq"), 0.5)
     gamma = checked_anisotropy(anisotropy)
-    return between_gammas(lambda known: _tabulated(ratio, known), TABLE, gamma)
+    return between_gammas(lambda known: _fitted_factor(ratio, known), TABLE, gamma)
 
 
 def patir_cheng_shear_flow(
@@ -83,7 +83,7 @@ def patir_cheng_shear_flow(
     return (upper**2 * first - lower**2 * second) / sigma
 
 
-def _tabulated(ratio: Array, gamma: float) -> Array:
+def _fitted_factor(ratio: Array, gamma: float) -> Array:
     a1, power, decay, square, a2 = TABLE[gamma]
     near = np.minimum(ratio, CHANGE)
     first = a1 * near**power * np.exp(-decay * near + square * near**2)

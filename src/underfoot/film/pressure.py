@@ -228,11 +228,11 @@ class _Grids:
     def coarser(self) -> _Grids | None:
         """Return the film on cells twice as large; None when no axis can lose half its cells."""
         axes = tuple(axis for axis in (0, 1) if self.gap.shape[axis] >= FEWEST_CELLS)
-        mask = _halved(self.mask.astype(float), axes) > 0.5
+        mask = _halve_field(self.mask.astype(float), axes) > 0.5
         if not axes or not mask.any():
             return None
         coarse = {
-            part.name: _halved(value, axes)
+            part.name: _halve_field(value, axes)
             for part in fields(self)
             if isinstance(value := getattr(self, part.name), np.ndarray) and part.name != "mask"
         }
@@ -446,7 +446,7 @@ def _check_fraction(values: Array, where: str) -> None:
         raise InputError("a liquid fraction is not 0 to 1", where=where, allowed="0 to 1")
 
 
-def _halved(field: Array, axes: tuple[int, ...]) -> Array:
+def _halve_field(field: Array, axes: tuple[int, ...]) -> Array:
     """Return the means of neighbouring cells along ``axes``; an odd last cell counts twice."""
     for axis in axes:
         if field.shape[axis] % 2:

@@ -75,7 +75,7 @@ def lubrication_by_lambda(lambda_ratio: float) -> Lubrication:
     >>> str(lubrication_by_lambda(0.5))
     'boundary'
     """
-    return _named(not_negative(lambda_ratio, "lambda_ratio"), LAMBDA_LIMITS)
+    return _regime_at(not_negative(lambda_ratio, "lambda_ratio"), LAMBDA_LIMITS)
 
 
 def lubrication_by_load_share(fluid_share: float) -> Lubrication:
@@ -86,7 +86,7 @@ def lubrication_by_load_share(fluid_share: float) -> Lubrication:
     >>> str(lubrication_by_load_share(0.5))
     'mixed'
     """
-    return _named(between(fluid_share, 0.0, 1.0, "fluid_share"), SHARE_LIMITS)
+    return _regime_at(between(fluid_share, 0.0, 1.0, "fluid_share"), SHARE_LIMITS)
 
 
 def fluid_load_share(film_thickness: ArrayLike, law: GapPressure, mean_pressure: float) -> Array:
@@ -199,7 +199,7 @@ def regime_map(
     )
 
 
-def _named(value: float, limits: tuple[float, float]) -> Lubrication:
+def _regime_at(value: float, limits: tuple[float, float]) -> Lubrication:
     if value < limits[0]:
         return Lubrication.BOUNDARY
     return Lubrication.MIXED if value <= limits[1] else Lubrication.FULL_FILM

@@ -46,7 +46,7 @@ def glycerol_water_viscosity(
     >>> round(float(glycerol_water_viscosity(0.9, 293.15)), 3)
     0.224
     """
-    share, celsius = _checked(fraction, temperature, basis)
+    share, celsius = _check_mixture(fraction, temperature, basis)
     mass = share if basis == "mass" else _mass_fraction(share, celsius)
     a = 0.705 - 0.0017 * celsius
     b = (4.9 + 0.036 * celsius) * a**2.5
@@ -81,7 +81,7 @@ def glycerol_water_density(fraction: ArrayLike, temperature: ArrayLike, basis: s
     >>> round(float(glycerol_water_density(0.9, 293.15)))
     1237
     """
-    share, celsius = _checked(fraction, temperature, basis)
+    share, celsius = _check_mixture(fraction, temperature, basis)
     mass = share if basis == "mass" else _mass_fraction(share, celsius)
     density = mass * _glycerol_density(celsius) + (1.0 - mass) * _water_density(celsius)
     return scalar_or_array(density)
@@ -93,7 +93,7 @@ def glycerol_mass_fraction(volume_fraction: ArrayLike, temperature: ArrayLike) -
     >>> round(float(glycerol_mass_fraction(0.5, 293.15)), 3)
     0.559
     """
-    share, celsius = _checked(volume_fraction, temperature, "volume")
+    share, celsius = _check_mixture(volume_fraction, temperature, "volume")
     mass = np.asarray(_mass_fraction(share, celsius))
     return scalar_or_array(mass)
 
@@ -120,7 +120,7 @@ def _water_density(celsius: np.ndarray) -> np.ndarray:
     return 1000.0 * (1.0 - np.abs((celsius - 4.0) / 622.0) ** 1.7)
 
 
-def _checked(
+def _check_mixture(
     fraction: ArrayLike, temperature: ArrayLike, basis: str
 ) -> tuple[np.ndarray, np.ndarray]:
     if basis not in BASES:

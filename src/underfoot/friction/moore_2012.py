@@ -144,7 +144,7 @@ class StribeckLaw(UncertainInputs):
 
     def contact_shear(self, pressure: Array, velocity: Array) -> tuple[Array, ...]:
         constants = (self.cof_boundary, self.tau_hydro, self.cof_asymptote)
-        cof = stribeck_cof(velocity, *(coefficient(each, "Eq. 17") for each in constants))
+        cof = stribeck_cof(velocity, *(coefficient(constant, "Eq. 17") for constant in constants))
         left = coefficient(self.cof_hysteresis or self.cof_asymptote, "cof_hysteresis")
         hysteresis = np.minimum(left, cof)
         return (cof - hysteresis) * pressure, hysteresis * pressure

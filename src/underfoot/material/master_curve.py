@@ -169,7 +169,7 @@ def fit_wlf(
     ``temperatures`` K and ``log10_shift_factors`` (n,), n >= 3. C2 is searched over a grid (C1 is
     linear once C2 is fixed) and refined, so no starting value is needed.
     """
-    t, shifts = _checked(temperatures, log10_shift_factors, 3)
+    t, shifts = _check_shifts(temperatures, log10_shift_factors, 3)
     away = t - reference_temperature
     lowest = max(-float(away.min()), 0.0)
 
@@ -192,7 +192,7 @@ def fit_arrhenius(
 
     ``temperatures`` K and ``log10_shift_factors`` (n,), n >= 2.
     """
-    t, shifts = _checked(temperatures, log10_shift_factors, 2)
+    t, shifts = _check_shifts(temperatures, log10_shift_factors, 2)
     inverse = (1.0 / t - 1.0 / reference_temperature) / (GAS_CONSTANT * np.log(10.0))
     energy = float(inverse @ shifts / (inverse @ inverse))
     rms = float(np.sqrt(np.mean((energy * inverse - shifts) ** 2)))
@@ -200,7 +200,7 @@ def fit_arrhenius(
     return ArrheniusShift(energy, float(reference_temperature), rms, tested)
 
 
-def _checked(
+def _check_shifts(
     temperatures: ArrayLike, shifts: ArrayLike, least: int
 ) -> tuple[np.ndarray, np.ndarray]:
     t, s = np.asarray(temperatures, dtype=float), np.asarray(shifts, dtype=float)
@@ -327,7 +327,7 @@ def dynamic_master_curve(
     y = [np.log10(np.array([s.storage_modulus, s.loss_modulus])) for s in ordered]
     used = 1 if shift_by == "storage" else 2
     shifts = _shift_table(x, y, temperatures, reference_temperature, used)
-    w = _reduced(x, shifts)
+    w = _shift_abscissae(x, shifts)
     order = np.argsort(w, kind="stable")
     return DynamicMasterCurve(
         w[order],
@@ -350,14 +350,14 @@ def relaxation_master_curve(
     x = [-np.log10(c.time) for c in ordered]
     y = [np.log10(c.modulus)[None, :] for c in ordered]
     shifts = _shift_table(x, y, temperatures, reference_temperature)
-    reduced, place = np.unique(_reduced(x, shifts, -1.0), return_inverse=True)
+    reduced, place = np.unique(_shift_abscissae(x, shifts, -1.0), return_inverse=True)
     count = np.bincount(place)
     modulus = np.bincount(place, np.concatenate([c.modulus for c in ordered])) / count
     kelvin = np.bincount(place, np.repeat(temperatures, [a.size for a in x])) / count
     return RelaxationMasterCurve(reduced, modulus, kelvin, shifts)
 
 
-def _reduced(x: Sequence[np.ndarray], shifts: ShiftTable, sign: float = 1.0) -> np.ndarray:
+def _shift_abscissae(x: Sequence[np.ndarray], shifts: ShiftTable, sign: float = 1.0) -> np.ndarray:
     pairs = zip(x, shifts.log10_shift_factors, strict=True)
     return np.concatenate([10.0 ** (sign * (a + shift)) for a, shift in pairs])
 

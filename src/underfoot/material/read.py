@@ -191,7 +191,7 @@ def _refuse_strains(table: FileTable, w: np.ndarray) -> None:
     places: dict[tuple[int, int], list[float]] = {}
     for row in zip(np.round(100 * np.log(w)), np.round(kelvin / SAME), strain, strict=True):
         places.setdefault((int(row[0]), int(row[1])), []).append(float(row[2]))
-    repeated = [each for each in places.values() if len(each) > 1]
+    repeated = [place for place in places.values() if len(place) > 1]
     if len(repeated) > 0.5 * len(places) and all(
         max(each) > OTHER_STRAIN * min(each) for each in repeated
     ):
@@ -529,13 +529,13 @@ def _sets(table: FileTable, axis: np.ndarray) -> list[tuple[np.ndarray, float | 
         numbers = table.numbers(label)
         groups = [np.flatnonzero(numbers == n) for n in np.unique(numbers)]
     else:
-        groups = _held(axis, kelvin)
+        groups = _test_rows(axis, kelvin)
     sets = [(rows, table.kelvin if kelvin is None else float(kelvin[rows].mean()))
             for rows in groups]  # fmt: skip
     return sorted(sets, key=lambda pair: pair[1] if pair[1] is not None else 0.0)
 
 
-def _held(axis: np.ndarray, kelvin: np.ndarray | None) -> list[np.ndarray]:
+def _test_rows(axis: np.ndarray, kelvin: np.ndarray | None) -> list[np.ndarray]:
     """Return the rows of each test by what the machine did: runs of the axis that start again.
 
     Runs at the temperature of the run before (a sweep up and down, a repeated one) are one test.

@@ -476,7 +476,7 @@ def read_tables(path: Path | str, units: Mapping[str, str] | None = None) -> lis
             above.append((number, line, cells))
             continue
         if draft is None:
-            draft = _begun(above, cells, inside, where, not drafts) or (
+            draft = _table_below(above, cells, inside, where, not drafts) or (
                 drafts[-1] if drafts else None
             )
             if draft is None:  # a number in the lines above a table
@@ -498,12 +498,12 @@ def _tableless(above: Sequence[tuple[int, str, list[str]]], where: str) -> DataE
             where=where,
             remedy="Name the columns with their units, for example: f (Hz), E_stor (MPa)",
         )
-    named = any(_named(cells) for _, _, cells in above)
+    named = any(_count_quantities(cells) for _, _, cells in above)
     what = "there are headings but no numbers" if named else "the file holds no table"
     return DataError(what, where=where, allowed="headings and rows")
 
 
-def _named(cells: Sequence[str]) -> int:
+def _count_quantities(cells: Sequence[str]) -> int:
     """Return how many cells name a quantity."""
     names = (heading_of(without_logarithm(cell)[0])[0] for cell in cells if cell)
     return sum(quantity_of(name) is not None for name in names)
@@ -606,7 +606,7 @@ class _Draft:
         return FileTable(columns, lines, where, part, stated, self.kelvin, rheometer)
 
 
-def _begun(
+def _table_below(
     above: Sequence[tuple[int, str, list[str]]],
     row: Sequence[str],
     inside: Mapping[int, str],
@@ -616,8 +616,8 @@ def _begun(
     """Return a table whose headings are the nearest above its first row; None without any."""
     parameters = [line for _, line, _ in above if _PARAMETERS.match(line)]
     texts = [(line, cells) for _, line, cells in above if line not in parameters]
-    named = [k for k, (_, cells) in enumerate(texts) if _named(cells)]
-    best = max(named, key=lambda k: (_named(texts[k][1]), k), default=None)
+    named = [k for k, (_, cells) in enumerate(texts) if _count_quantities(cells)]
+    best = max(named, key=lambda k: (_count_quantities(texts[k][1]), k), default=None)
     if best is None:
         words = [k for k, (_, cells) in enumerate(texts) if first and not _is_row(cells)]
         best = next((k for k in reversed(words) if len(texts[k][1]) == len(row)), None)

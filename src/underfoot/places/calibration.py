@@ -130,7 +130,9 @@ class FloorCalibration(Presentable):
 
     def heading(self) -> str:
         """Return the title."""
-        return Message("Floor by {readings:; }", readings=[each.text for each in self.readings])
+        return Message(
+            "Floor by {readings:; }", readings=[reading.text for reading in self.readings]
+        )
 
     def headline(self) -> tuple[Message, ...]:
         """Return what the readings say of the floor."""
@@ -354,12 +356,12 @@ class PairReadOption(PairOption):
     def build(self, context: Context) -> FrictionLaw:
         """Return the law, narrowed."""
         law = self.unread(context)
-        told = _narrowed(law.pair, self.floor_readings(), self.draws_file, self.sha256)
+        told = _narrow_pair(law.pair, self.floor_readings(), self.draws_file, self.sha256)
         return PairContactLaw(law.pair, law.viscosity, told.draws)
 
 
 @lru_cache(maxsize=32)
-def _narrowed(
+def _narrow_pair(
     pair: Pair, readings: tuple[FloorReading, ...], draws_file: str | None, sha256: str | None
 ) -> FloorCalibration:
     draws = packaged_pair_draws()

@@ -164,7 +164,7 @@ class ShoeChoice(Presentable):
 
     def _chance(self, answer: ShoeAnswer) -> float:
         """Return the chance that a shoe is best: one with all that are the same shoe."""
-        return math.fsum(each.best for each in self.shoes if same_shoe(each.shoe, answer.shoe))
+        return math.fsum(shoe.best for shoe in self.shoes if same_shoe(shoe.shoe, answer.shoe))
 
     @property
     def _unlike(self) -> tuple[ShoeAnswer, ...]:
@@ -207,7 +207,7 @@ class ShoeChoice(Presentable):
                     count=count, told=told,
                 )
             ]  # fmt: skip
-        if unlikely := [each.shoe.name for each in self.shoes if self._chance(each) < UNLIKELY]:
+        if unlikely := [shoe.shoe.name for shoe in self.shoes if self._chance(shoe) < UNLIKELY]:
             lines.append(
                 Message(
                     "Hardly the best (chance below {limit:.0f} %): {shoes}.",
@@ -328,7 +328,7 @@ class ShoeChoice(Presentable):
 
     def remarks(self) -> Mapping[str, Sequence[str]]:
         """Return what was assumed."""
-        used = {each.machine for floor in self.place.floors for each in floor.readings}
+        used = {reading.machine for floor in self.place.floors for reading in floor.readings}
         read = used or any(shoe.readings or shoe.known_class for shoe in self.place.shoes)
         notes = [
             Message(
@@ -357,13 +357,13 @@ class ShoeChoice(Presentable):
             "name": self.place.name,
             "shoes": [
                 {
-                    "name": each.shoe.name,
-                    "chance_best": each.best,
-                    "slip_probability": each.slips.value,
-                    "interval_95": each.slips.interval,
-                    "replace": each.replaced,
+                    "name": shoe.shoe.name,
+                    "chance_best": shoe.best,
+                    "slip_probability": shoe.slips.value,
+                    "interval_95": shoe.slips.interval,
+                    "replace": shoe.replaced,
                 }
-                for each in self.shoes
+                for shoe in self.shoes
             ],
             "changes": [
                 {"name": lever.name, "left": list(lever.left), "fewer": lever.fewer}
@@ -622,15 +622,15 @@ def choose_shoe(
             shoe,
             mean_of_draws(rates[shoe.name] / place.wet_share, source=MODEL.source),
             float(chance),
-            _replaced(shoe, states[shoe.name], worn_rate.get(shoe.name), place, joint),
-            _reported(place, rates[shoe.name], rates[present.name]),
+            _replacement_time(shoe, states[shoe.name], worn_rate.get(shoe.name), place, joint),
+            _reported_slips(place, rates[shoe.name], rates[present.name]),
         )
         for shoe, chance in zip(place.shoes, best, strict=True)
     )
     step("another floor")
     today = rates[present.name]
     levers = []
-    others = [each for each in answers if each.shoe.name != present.name]
+    others = [answer for answer in answers if answer.shoe.name != present.name]
     if others:
         other = min(others, key=lambda each: float(rates[each.shoe.name].mean())).shoe.name
         name = Message("{other} instead of {present}", other=other, present=present.name)
@@ -662,7 +662,8 @@ def choose_shoe(
         levers.append(_lever(name, _sum(_slips(place, joint, tiled)), new))
     levers += _cleaning(place, solver, present, states[present.name][False], shares[present.name])
     levers = sorted(
-        (each for each in levers if each.does_something), key=lambda each: (each.left[1], each.name)
+        (lever for lever in levers if lever.does_something),
+        key=lambda each: (each.left[1], each.name),
     )
     measurements = _measurements(place, joint, floor_rq, new_cases, matrix)
     mean = {
@@ -805,7 +806,7 @@ def _sum(shares: Mapping[tuple[str, str], Array]) -> Array:
     return np.sum([shares[key] for key in sorted(shares)], axis=0)
 
 
-def _left(after: Array, before: Array) -> tuple[float, float, float]:
+def _slip_ratio(after: Array, before: Array) -> tuple[float, float, float]:
     """Return the ratio of the mean slips between the 2.5 and 97.5 % of the ratio of the draws.
 
     Draws in which nobody slips, before and after, have no ratio.
@@ -820,14 +821,14 @@ def _left(after: Array, before: Array) -> tuple[float, float, float]:
 
 def _lever(name: str, after: Array, before: Array) -> Lever:
     fewer = np.mean(after < before) + 0.5 * np.mean(after == before)
-    return Lever(name, _left(after, before), float(fewer))
+    return Lever(name, _slip_ratio(after, before), float(fewer))
 
 
-def _reported(place: Place, after: Array, today: Array) -> str:
+def _reported_slips(place: Place, after: Array, today: Array) -> str:
     if place.reported is None:
         return ""
     ends = (1 / MOST_RATIO, MOST_RATIO)
-    low, median, high = np.clip(_left(after, today), *ends)
+    low, median, high = np.clip(_slip_ratio(after, today), *ends)
     least, middle, most = (_count(place.reported * ratio) for ratio in (low, median, high))
     if low == high:
         return middle
@@ -836,7 +837,7 @@ def _reported(place: Place, after: Array, today: Array) -> str:
     return Message("{median} ({low} to {high})", median=middle, low=least, high=most)
 
 
-def _replaced(
+def _replacement_time(
     shoe: PlaceShoe,
     states: Mapping[bool, Mapping[tuple[str, str], Cell]],
     worn: Array | None,
@@ -851,7 +852,7 @@ def _replaced(
         return ""
     new = _sum(_slips(place, joint, states[False]))
     if shoe.worn_region is not None:
-        left = _left(worn, new)
+        left = _slip_ratio(worn, new)
         if left[1] > TWICE:
             return Message("now: {ratio} times the slips of new", ratio=_share(left))
         return Message("not yet: {ratio} times the slips of new", ratio=_share(left))

@@ -172,7 +172,7 @@ def learn_machine(device: Machine, left_out: str = "") -> Learned | None:
     sources = [each.source for each in read]
     if len(read) < 3 or len(set(sources)) < 2:
         return None
-    law = np.array([_unlearned(each) for each in read])
+    law = np.array([_unlearned_scatter(each) for each in read])
     off = np.log([float(device.scale.cof(each.middle)) for each in read]) - law[:, 0]
     alike = np.array([[one == other for one in sources] for other in sources], dtype=float)
     pair = float(np.median(packaged_pair_draws().sd_pair))
@@ -246,7 +246,7 @@ def floor_likeness(left_out: str = "") -> float:
 
 
 @cache
-def _unlearned(each: Evidence) -> tuple[float, float]:
+def _unlearned_scatter(each: Evidence) -> tuple[float, float]:
     return each.unlearned(each.machine)
 
 
@@ -398,10 +398,10 @@ def _digits(device: Machine) -> int:
 
 def machine_scores(seed: int = 0) -> MachineScores:
     """Return every reading that can be read beside its prediction with the source left out."""
-    return MachineScores(tuple(_scored(each, seed) for each in evidence()))
+    return MachineScores(tuple(_score_floor(each, seed) for each in evidence()))
 
 
-def _scored(each: Evidence, seed: int) -> ScoredReading:
+def _score_floor(each: Evidence, seed: int) -> ScoredReading:
     device = replace(each.machine, learned=learn_machine(each.machine, each.source))
     joint = PlaceDraws(count=DRAWS, seed=seed)
     read = device.read(joint, each.floor, each.rq, FLUIDS[device.fluids[0]])

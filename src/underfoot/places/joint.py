@@ -57,12 +57,17 @@ class CofReading:
     sd: float | None = None
 
     def __post_init__(self) -> None:
-        if self.kind not in KINDS:
-            raise unknown_name("kind", self.kind, KINDS, where="reading.kind")
+        check_kind(self.kind, "reading.kind")
         if not 0 < self.cof < 5:
             raise InputError(f"{self.cof:g}", where="reading", allowed="a COF above 0, below 5")
         if self.sd is not None and not 0 < self.sd < 5:
             raise InputError(f"{self.sd:g}", where="reading.sd", allowed="above 0, below 5")
+
+
+def check_kind(kind: str, where: str) -> None:
+    """Raise an error for a kind of reading that there is not, and name its place."""
+    if kind not in KINDS:
+        raise unknown_name("kind", kind, KINDS, where=where)
 
 
 class PlaceDraws:

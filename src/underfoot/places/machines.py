@@ -370,7 +370,7 @@ def machines() -> Mapping[str, Machine]:
     """Return the machines by name: set-ups of the catalogue that answer ``machine_reading``."""
     every = catalogue()
     entries = [every.entry("setup", name) for name in every.names("setup")]
-    read = [each for each in entries if "machine.scale" in each.values]
+    read = [entry for entry in entries if "machine.scale" in entry.values]
     return {each.name: each for each in map(machine_of, read)}
 
 
@@ -502,7 +502,9 @@ class MachinePrediction(Presentable):
         if self.machine.learned is None:
             lines.append(Message("No reading of this machine stands behind the prediction."))
         unsure = [
-            each for each in self.machine.entry.values.values() if each.assumed or not each.verified
+            value
+            for value in self.machine.entry.values.values()
+            if value.assumed or not value.verified
         ]
         lines.append(
             Message(

@@ -17,7 +17,7 @@ from underfoot.core.remark import Message, Remark
 from underfoot.friction.shoe_class import ShoeClass, shoe_class, slip_tests
 
 from .calibration import FloorReading
-from .joint import CofReading
+from .joint import CofReading, check_kind
 from .machines import machine
 
 ANY_ROUGHNESS = {"rq": {"value": "1.73 um", "uncertainty": "1.91 um"}}
@@ -180,10 +180,10 @@ def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None 
     assumed: list[str] = []
     common = _shares(table.get("fluids"), "fluids") if "fluids" in table else None
     entries = _tables(table, "floor")
-    floors = tuple(_floor(each, common, assumed) for each in entries)
+    floors = tuple(_floor(entry, common, assumed) for entry in entries)
     shoes = tuple(_shoe(each) for each in _tables(table, "shoe"))
     _share_steps(entries, assumed)
-    if common is not None and all("fluids" in each for each in entries):
+    if common is not None and all("fluids" in entry for entry in entries):
         remedy = "Leave these out, or those of the floors"
         raise InputError("each floor has its own", where="fluids", remedy=remedy)
     today = [shoe.name for shoe in shoes if shoe.present]
@@ -222,7 +222,7 @@ def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None 
         assumed.append("people.days_per_year: no number of the choice hangs on it")
     if "steps_per_day" not in people:
         assumed.append("people.steps_per_day: not given; 8000 assumed")
-    named = _listed(people, "task", "people")
+    named = _table_list(people, "task", "people")
     tasks = tuple(_task(each, mean) for each in named) or (Task("walking", 1.0, mean),)
     of_tasks = all("rcof" in each for each in named or [{}])
     if "rcof_mean" in people and of_tasks:
@@ -252,7 +252,7 @@ def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None 
 
 def _share_steps(floors: Sequence[Mapping[str, Any]], assumed: list[str]) -> None:
     """Say how steps are shared between floors without areas; refuse areas of some of them."""
-    without = [each["name"] for each in floors if "area" not in each]
+    without = [floor["name"] for floor in floors if "area" not in floor]
     if without and len(without) < len(floors):
         raise InputError(
             "is missing, other floors have one",
@@ -297,7 +297,7 @@ def _tables(table: Mapping[str, Any], key: str) -> Sequence[Mapping[str, Any]]:
     return entries
 
 
-def _listed(table: Mapping[str, Any], key: str, where: str) -> Sequence[Any]:
+def _table_list(table: Mapping[str, Any], key: str, where: str) -> Sequence[Any]:
     """Return a list of tables within one; one table by itself is refused as such."""
     entries = table.get(key, [])
     if not isinstance(entries, list):
@@ -387,7 +387,7 @@ def _floor(
         assumed.append(Message("{where}.roughness: Rq is Rz over 4 to 8", where=where))
     readings = tuple(
         _floor_reading(each, f"{where}.reading {number}")
-        for number, each in enumerate(_listed(entry, "reading", where), start=1)
+        for number, each in enumerate(_table_list(entry, "reading", where), start=1)
     )
     if not section and not readings:
         assumed.append(
@@ -409,7 +409,7 @@ def _floor_reading(entry: Any, where: str) -> FloorReading:
     value = device.checked(entry["value"], f"{where}.value")
     kind = str(entry.get("kind", "value"))
     spread = _number(entry, "sd", where, 0.0, (1e-6, device.most)) if "sd" in entry else None
-    CofReading(float(device.scale.cof(value)), kind)  # refuses what is none
+    check_kind(kind, f"{where}.kind")
     return FloorReading(device, fluid, value, kind, spread)
 
 
@@ -442,7 +442,7 @@ def _shoe(entry: Mapping[str, Any]) -> PlaceShoe:
             remedy="Give the tread that is left (tread.depth), and its wear from then on",
         )
     readings = []
-    for number, each in enumerate(_listed(entry, "reading", where), start=1):
+    for number, each in enumerate(_table_list(entry, "reading", where), start=1):
         at = f"{where}.reading {number}"
         _check_keys(each, "shoe.reading", at)
         test = str(each.get("test", ""))
@@ -452,7 +452,9 @@ def _shoe(entry: Mapping[str, Any]) -> PlaceShoe:
             raise InputError("is missing", where=f"{at}.cof", allowed="the COF of the certificate")
         cof = _number(each, "cof", at, 0.0, (0.01, 2.0))
         sd = _number(each, "sd", at, 0.0, (1e-6, 2.0)) if "sd" in each else None
-        readings.append(ShoeReading(test, CofReading(cof, str(each.get("kind", "value")), sd)))
+        kind = str(each.get("kind", "value"))
+        check_kind(kind, f"{at}.kind")
+        readings.append(ShoeReading(test, CofReading(cof, kind, sd)))
     known = shoe_class(str(entry["class"]), f"{where}.class") if "class" in entry else None
     present = entry.get("present", False)
     if not isinstance(present, bool):

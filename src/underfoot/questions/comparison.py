@@ -207,7 +207,7 @@ class Comparison(Presentable):
                 for rank in self.ranking
             ],
         )
-        rows = [tuple(map(_shortened, row)) for row in with_short_names(self.differences)]
+        rows = [tuple(map(_shorten_cell, row)) for row in with_short_names(self.differences)]
         inputs = Table("Inputs that differ", ("Input", *self.letters), rows)
         steps = Table(
             "What would tell the two highest apart",
@@ -544,5 +544,5 @@ def with_short_names(rows: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
     return short
 
 
-def _shortened(text: str) -> str:
+def _shorten_cell(text: str) -> str:
     return text if len(text) <= LONGEST_CELL else f"…{text[1 - LONGEST_CELL :]}"

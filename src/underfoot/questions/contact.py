@@ -102,7 +102,7 @@ class RoughContact(Presentable):
     def table(self) -> Table:
         content = self.to_dict()
         rows = [
-            (label, _shown(content[key], unit, "not estimated"), remark)
+            (label, _value_text(content[key], unit, "not estimated"), remark)
             for label, key, unit, remark in ROWS
         ]
         status = (
@@ -116,7 +116,7 @@ class RoughContact(Presentable):
             return (self.table(),)
         rows = [
             [
-                _shown(value, "m" if name.endswith("_m") else "1", "not converged")
+                _value_text(value, "m" if name.endswith("_m") else "1", "not converged")
                 for name, value in row.items()
             ]
             for row in self._scale_entries(self.scales)
@@ -177,7 +177,7 @@ class RoughContact(Presentable):
         ]
 
 
-def _shown(value: float | None, unit: str, missing: str) -> str:
+def _value_text(value: float | None, unit: str, missing: str) -> str:
     return missing if value is None else display(value, unit)
 
 

@@ -210,7 +210,7 @@ def change_effects(
             progress(STAGE, 0.3 + 0.3 * number / len(changes))
             if variant.shoe.material != case.shoe.material:
                 continue  # a rubber that gives way otherwise: most steps to it cost a march or fail
-            seen = _continued(march, changes[number], lugs)
+            seen = _continue_march(march, changes[number], lugs)
             if seen is not None:
                 there = _Friction.of_march(seen)
                 there = there.moved(start, mean).spread(left_out, there.film_left(start))
@@ -270,7 +270,7 @@ def _march(case: Case, progress: Progress) -> Continuation | None:
         return None
 
 
-def _continued(march: Continuation, change: Change, lugs: bool) -> Preview | None:
+def _continue_march(march: Continuation, change: Change, lugs: bool) -> Preview | None:
     """Return a change by continuation; None where it can't be made or may be too far off."""
     try:
         seen = march.continued(change.values)

@@ -88,7 +88,7 @@ class MethodCondition:
     @property
     def breaches(self) -> list[Remark]:
         """Return what left a tested range; that of a slip model is no matter of a method."""
-        return [each for each in self.outcome.breaches if each.about not in MODELS]
+        return [breach for breach in self.outcome.breaches if breach.about not in MODELS]
 
     @property
     def sentence(self) -> Message:
@@ -131,17 +131,21 @@ class MethodPrediction(Presentable):
 
     @property
     def usable(self) -> bool:
-        return all(each.outcome.usable for each in self.conditions)
+        return all(condition.outcome.usable for condition in self.conditions)
 
     def heading(self) -> str:
         return Message("{name} by {title}", name=self.name, title=self.title)
 
     def headline(self) -> tuple[Message, ...]:
-        return tuple(each.sentence for each in self.conditions)
+        return tuple(condition.sentence for condition in self.conditions)
 
     def cautions(self) -> tuple[Message, ...]:
         reasons: list[Message] = []
-        unsure = [each.name for each in self.requirements if each.basis is not Basis.VERIFIED]
+        unsure = [
+            requirement.name
+            for requirement in self.requirements
+            if requirement.basis is not Basis.VERIFIED
+        ]
         if unsure:
             reasons.append(
                 Message(
@@ -157,17 +161,21 @@ class MethodPrediction(Presentable):
     def table(self) -> Table:
         rows = [
             (
-                each.title,
-                each.floor,
-                each.contaminant,
-                value_text("cof", each.cof) if each.cof.value is None else f"{each.cof.value:.3f}",
+                condition.title,
+                condition.floor,
+                condition.contaminant,
+                value_text("cof", condition.cof)
+                if condition.cof.value is None
+                else f"{condition.cof.value:.3f}",
                 ""
-                if each.low is None
-                else Message("{low:.2f} to {high:.2f}", low=each.low, high=each.high),
-                "none" if each.limit is None else f"{each.limit.value:g}",
-                "" if each.probability is None else drawn_probability_text(each.probability),
+                if condition.low is None
+                else Message("{low:.2f} to {high:.2f}", low=condition.low, high=condition.high),
+                "none" if condition.limit is None else f"{condition.limit.value:g}",
+                ""
+                if condition.probability is None
+                else drawn_probability_text(condition.probability),
             )
-            for each in self.conditions
+            for condition in self.conditions
         ]
         heads = ("Condition", "Floor", "Contaminant", "COF", "95 %", "Limit")
         return Table("Prediction", (*heads, "Probability of passing"), rows)
@@ -175,14 +183,14 @@ class MethodPrediction(Presentable):
     def tables(self) -> tuple[Table, ...]:
         rows = [
             (
-                each.name,
-                each.required,
-                each.used,
-                Message("{basis} ({source})", basis=each.basis, source=each.source)
-                if each.source
-                else str(each.basis),
+                requirement.name,
+                requirement.required,
+                requirement.used,
+                Message("{basis} ({source})", basis=requirement.basis, source=requirement.source)
+                if requirement.source
+                else str(requirement.basis),
             )
-            for each in self.requirements
+            for requirement in self.requirements
         ]
         settings = Table("Settings of the method", ("Setting", "Required", "Used", "Basis"), rows)
         return self.table(), settings
@@ -193,7 +201,9 @@ class MethodPrediction(Presentable):
             "Notes": notes,
             "Outside the tested range": self._breaches(),
             "Assumptions": list(
-                dict.fromkeys(line for each in self.conditions for line in each.outcome.assumptions)
+                dict.fromkeys(
+                    line for condition in self.conditions for line in condition.outcome.assumptions
+                )
             ),
         }
 
@@ -202,22 +212,22 @@ class MethodPrediction(Presentable):
             "method": self.method,
             "title": self.title,
             "source": self.source,
-            "requirements": [asdict(each) for each in self.requirements],
+            "requirements": [asdict(requirement) for requirement in self.requirements],
             "conditions": [
                 {
-                    "name": each.name,
-                    "title": each.title,
-                    "floor": each.floor,
-                    "contaminant": each.contaminant,
-                    "cof": each.cof.to_dict(),
-                    "interval_95": [each.low, each.high],
-                    "limit": None if each.limit is None else each.limit.to_dict(),
-                    "probability_of_passing": each.probability,
-                    "status": str(each.outcome.status),
-                    "breaches": each.breaches,
-                    "assumptions": list(each.outcome.assumptions),
+                    "name": condition.name,
+                    "title": condition.title,
+                    "floor": condition.floor,
+                    "contaminant": condition.contaminant,
+                    "cof": condition.cof.to_dict(),
+                    "interval_95": [condition.low, condition.high],
+                    "limit": None if condition.limit is None else condition.limit.to_dict(),
+                    "probability_of_passing": condition.probability,
+                    "status": str(condition.outcome.status),
+                    "breaches": condition.breaches,
+                    "assumptions": list(condition.outcome.assumptions),
                 }
-                for each in self.conditions
+                for condition in self.conditions
             ],
         }
 
@@ -228,21 +238,21 @@ class MethodPrediction(Presentable):
         )
         rows = [
             (
-                each.title,
-                each.floor,
-                each.contaminant,
-                each.cof.value,
-                each.cof.uncertainty,
-                each.low,
-                each.high,
-                each.limit and each.limit.value,
-                each.limit and each.limit.source,
-                each.probability,
-                str(each.outcome.status),
+                condition.title,
+                condition.floor,
+                condition.contaminant,
+                condition.cof.value,
+                condition.cof.uncertainty,
+                condition.low,
+                condition.high,
+                condition.limit and condition.limit.value,
+                condition.limit and condition.limit.source,
+                condition.probability,
+                str(condition.outcome.status),
             )
-            for each in self.conditions
+            for condition in self.conditions
         ]
-        required = [tuple(asdict(each).values()) for each in self.requirements]
+        required = [tuple(asdict(requirement).values()) for requirement in self.requirements]
         names = ("requirement", "required", "used", "basis", "source")
         return {
             "conditions": Table("", tuple(heads), rows),
@@ -250,7 +260,7 @@ class MethodPrediction(Presentable):
         }
 
     def _breaches(self) -> list[Remark]:
-        return list(dict.fromkeys(b for each in self.conditions for b in each.breaches))
+        return list(dict.fromkeys(b for condition in self.conditions for b in condition.breaches))
 
 
 def method_name(name: str, case: Case) -> str:
@@ -259,7 +269,9 @@ def method_name(name: str, case: Case) -> str:
     plain = NICKNAMES.get(plain, plain)
     entries = [case.catalogue.entry("setup", known) for known in case.catalogue.names("setup")]
     asked = {"motion.speed", "method.question"}
-    known = [each.name for each in entries if asked & each.values.keys() and each.under("method")]
+    known = [
+        entry.name for entry in entries if asked & entry.values.keys() and entry.under("method")
+    ]
     if plain not in known:
         raise unknown_name("test method", name, known, where="--method")
     return plain
@@ -302,7 +314,7 @@ def method_prediction(
     if "method.question" in entry.values:
         return ask(entry.text("method.question"), case, method=entry.name, keep=keep)
     plan = [
-        (name, *_prepared(case, entry, floor, fluid, keep))
+        (name, *_prepare_case(case, entry, floor, fluid, keep))
         for name, floor, fluid in _conditions(entry)
     ]
     share = 1.0 / (1 + len(plan)) if with_band else 1.0
@@ -324,17 +336,17 @@ def method_prediction(
         conditions.append(_condition(entry, name, tested, results[number], effects))
         if len(plan) > 1:  # floor and fluid differ from condition to condition
             settings = [
-                replace(each, name=f"{each.name}, {name.replace('_', ' ')}")
-                if each.name in ("floor", "contaminant")
-                else each
-                for each in settings
+                replace(setting, name=f"{setting.name}, {name.replace('_', ' ')}")
+                if setting.name in ("floor", "contaminant")
+                else setting
+                for setting in settings
             ]
-        requirements += [each for each in settings if each not in requirements]
+        requirements += [setting for setting in settings if setting not in requirements]
     if window := _window(entry):
         end = plan[0][1].motion.end_time
         used = "steady sliding" if end is None else Message("at {end}", end=Amount(end, "s"))
         leaf = entry.values["method.averaging_end"]
-        requirements.append(_required("averaging window", window, used, leaf))
+        requirements.append(_requirement("averaging window", window, used, leaf))
     return MethodPrediction(
         case.name,
         entry.name,
@@ -355,7 +367,7 @@ def _conditions(entry: Entry) -> list[tuple[str, Leaf | None, Leaf | None]]:
     ]
 
 
-def _prepared(
+def _prepare_case(
     case: Case, entry: Entry, floor: Leaf | None, fluid: Leaf | None, keep: Sequence[str]
 ) -> tuple[Case, list[MethodRequirement]]:
     """Return the case under the method, and what the method asked for."""
@@ -381,7 +393,7 @@ def _prepared(
             settings.append(MethodRequirement(section, str(leaf.given), used, Basis.DEPARTURE))
         else:
             changes[section] = str(leaf.given)
-            settings.append(_required(section, str(leaf.given), "as required", leaf))
+            settings.append(_requirement(section, str(leaf.given), "as required", leaf))
     if "method.sole" in entry.values and not has_whole_sole(case):
         raise InputError(
             "the sole is a heel piece",
@@ -406,7 +418,7 @@ def _prepared(
             used = Message("{setting} (kept)", setting=Amount(getattr(changed.motion, name), unit))
             settings.append(MethodRequirement(label, required, used, Basis.DEPARTURE))
         else:
-            settings.append(_required(label, required, "as required", leaf))
+            settings.append(_requirement(label, required, "as required", leaf))
     return changed, settings
 
 
@@ -435,7 +447,7 @@ def _window(entry: Entry) -> str:
     return Message("{begin} to {end} after {after}", begin=begin, end=end, after=after)
 
 
-def _required(name: str, required: str, used: str, leaf: Leaf) -> MethodRequirement:
+def _requirement(name: str, required: str, used: str, leaf: Leaf) -> MethodRequirement:
     if leaf.assumed:
         return MethodRequirement(name, required, used, Basis.ASSUMED)
     basis = Basis.VERIFIED if leaf.verified else Basis.FROM_MEMORY

@@ -108,7 +108,7 @@ class RiskAssessment(Presentable):
     @property
     def effective(self) -> list[ChangeEffect]:
         """Return the changes that were computed and do something."""
-        return [each for each in self.changes if each.computed and self._moves(each)]
+        return [change for change in self.changes if change.computed and self._moves(change)]
 
     @property
     def apart(self) -> list[ModelRisk]:
@@ -198,7 +198,7 @@ class RiskAssessment(Presentable):
     def table(self) -> Table:
         place = {id(each): number for number, each in enumerate(self.best, 1)}
         rows = []
-        told = [one for one in self.changes if not one.computed or self._moves(one)]
+        told = [change for change in self.changes if not change.computed or self._moves(change)]
         for each in sorted(told, key=lambda one: place.get(id(one), len(told) + 1)):
             rank = place.get(id(each))
             if not each.computed:
@@ -230,7 +230,9 @@ class RiskAssessment(Presentable):
     def remarks(self) -> dict[str, Sequence[str]]:
         told = {id(each) for each in self.effective}
         idle = [
-            each.change.action for each in self.changes if each.computed and id(each) not in told
+            change.change.action
+            for change in self.changes
+            if change.computed and id(change) not in told
         ]
         return {**self.outcome.remarks(), "Tried without effect": idle}
 
@@ -271,24 +273,24 @@ class RiskAssessment(Presentable):
             ],
             "changes": [
                 {
-                    "name": each.change.name,
-                    "action": each.change.action,
-                    "lever": each.change.lever,
-                    "values": dict(each.change.values),
+                    "name": change.change.name,
+                    "action": change.change.action,
+                    "lever": change.change.lever,
+                    "values": dict(change.change.values),
                     **{
-                        name: each.number(name) if each.computed else None
+                        name: change.number(name) if change.computed else None
                         for name in ("cof", "slip_probability", "fluid_load")
                     },
-                    "slip_interval": each.scalars["slip_probability"].interval
-                    if each.computed
+                    "slip_interval": change.scalars["slip_probability"].interval
+                    if change.computed
                     else None,
-                    "extrapolated": each.computed and bool(_note(each)),
-                    "cof_error": each.error,
-                    "higher_cof": each.higher,
-                    "does_something": each.computed and self._moves(each),
-                    "reason": each.reason,
+                    "extrapolated": change.computed and bool(_note(change)),
+                    "cof_error": change.error,
+                    "higher_cof": change.higher,
+                    "does_something": change.computed and self._moves(change),
+                    "reason": change.reason,
                 }
-                for each in self.changes
+                for change in self.changes
             ],
         }
 
@@ -351,7 +353,7 @@ def risk_assessment(
     draws = present.data.get("cof_draws")
     acof = present.scalars["cof"], None if draws is None else np.asarray(draws)
     models = model_risks(case, *acof, target)
-    own = _needed(target, *acof, required_friction(case), case.risk.build())
+    own = _needed_acof(target, *acof, required_friction(case), case.risk.build())
     return RiskAssessment(
         case.name,
         outcome,
@@ -390,7 +392,7 @@ def model_risks(
                 risk.probability.value or 0.0,
                 risk.low,
                 risk.high,
-                _needed(target, acof, draws, people, model),
+                _needed_acof(target, acof, draws, people, model),
             )
         )
     return tuple(risks)
@@ -425,7 +427,7 @@ def _sure(effect: ChangeEffect) -> str:
     return drawn_probability_text(effect.higher)
 
 
-def _needed(
+def _needed_acof(
     target: float,
     acof: SourcedValue,
     draws: Array | None,

@@ -113,7 +113,7 @@ class InputEffect:
         """
         centre = nominal.number(name)
         departures = (self.low.number(name) - centre, self.high.number(name) - centre)
-        return math.sqrt(sum(each**2 for each in departures) / 2)
+        return math.sqrt(sum(departure**2 for departure in departures) / 2)
 
     def ends(self) -> tuple[str, str]:
         """Return the input's low and high value as text."""
@@ -304,7 +304,9 @@ class Sensitivity(Presentable):
         deviations = [effect.deviation(name, self.nominal) for effect in self.effects]
         ends = [end.number(name) for effect in self.effects for end in (effect.low, effect.high)]
         values = [value, *(end for end in ends if not math.isnan(end))]
-        inputs = math.sqrt(sum(each**2 for each in deviations if not math.isnan(each)))
+        inputs = math.sqrt(
+            sum(deviation**2 for deviation in deviations if not math.isnan(deviation))
+        )
         law = self.nominal.spread(name)
         law = 0.0 if math.isnan(law) else law
         pairs = zip(self.effects, deviations, strict=True)

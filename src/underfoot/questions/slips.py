@@ -82,7 +82,9 @@ class SlipPopulation(Presentable):
     @property
     def heard(self) -> bool:
         """Whether a sensor read anybody's film above its own noise."""
-        return self.wet and any(each.seen.duration is not None for each in self.study.subjects)
+        return self.wet and any(
+            subject.seen.duration is not None for subject in self.study.subjects
+        )
 
     def headline(self) -> tuple[Message, ...]:
         study = self.study
@@ -415,13 +417,13 @@ class MeasuredRcof:
     @classmethod
     def of(cls, steps: Mapping[str, Sequence[float]], who: Message, more: Message) -> Self:
         """Return that of the steps of each person or file; ``who`` names these, ``more`` adds."""
-        values = [np.asarray(each, dtype=float) for each in steps.values()]
-        count = sum(each.size for each in values)
+        values = [np.asarray(step, dtype=float) for step in steps.values()]
+        count = sum(value.size for value in values)
         freedom = count - len(values)
-        squares = sum(float(((each - each.mean()) ** 2).sum()) for each in values)
+        squares = sum(float(((value - value.mean()) ** 2).sum()) for value in values)
         within = math.sqrt(squares / freedom) if freedom else None
         one = len(values) == 1
-        of = values[0] if one else np.array([each.mean() for each in values])
+        of = values[0] if one else np.array([value.mean() for value in values])
         mean, sd = float(of.mean()), float(of.std(ddof=1))
         spread = NOTHING
         if one:
@@ -487,7 +489,7 @@ def measured_rcof(path: Path) -> MeasuredRcof:
             allowed='rows with quantity "rcof" and a value, as in measurements.csv',
         )
     values, several = [*steps.values()], len(steps) > 1
-    apart = [float(np.mean(each)) for each in values] if several else values[0]
+    apart = [float(np.mean(value)) for value in values] if several else values[0]
     if np.ptp(apart) < SAME_RCOF:
         alike = f"{len(apart)} {'persons' if several else 'steps'}, all alike"
         raise InputError(
@@ -532,12 +534,12 @@ def _value_text(value: SourcedValue) -> str:
     if value.value is None:
         return Message("not determined: {reason}", reason=value.reason)
     if value.unit == "m/s":
-        spread = "" if value.uncertainty is None else f" ± {_speed(value.uncertainty)}"
+        spread = "" if value.uncertainty is None else f" ± {_speed_text(value.uncertainty)}"
         return f"{value.value:.2f}{spread} m/s"
     return quantity_text(value.value, value.unit, value.uncertainty)
 
 
-def _speed(value: float) -> str:
+def _speed_text(value: float) -> str:
     return f"{value:.2f}" if value >= 0.005 else "below 0.01"
 
 

@@ -105,7 +105,7 @@ class WearWalker:
             steps = [length / step for step in reversed(STEP)]
         else:
             landings = [volume / (self.wear_rate * LANDING_LOAD * s) for s in reversed(SLIDING)]
-            steps = [2 * each for each in landings]
+            steps = [2 * landing for landing in landings]
             distance = (steps[0] * STEP[0], steps[1] * STEP[1])
         low, high = (n / a / DAYS_A_MONTH for n, a in zip(steps, STEPS_A_DAY[::-1], strict=True))
         return Walked(distance, (low, high))

@@ -319,7 +319,7 @@ class WearSeries(Presentable):
         """Return the distance (m) and months to each state by name; nothing without a walker."""
         names = ("walked_low_m", "walked_high_m", "months_low", "months_high")
         ends = [(*walk.distance, *walk.months) for walk in self.walked()]
-        return [dict(zip(names, each, strict=True)) for each in ends] or [{} for _ in self.points]
+        return [dict(zip(names, end, strict=True)) for end in ends] or [{} for _ in self.points]
 
     def values(self, name: str) -> np.ndarray:
         """Return a number of all points in SI, nan where it was not determined."""
@@ -514,7 +514,7 @@ def wear_series(
             name: limit_crossing(points, name, limit, draws=draws, seed=seed, between=between)
             for name in LOADS
         },
-        assumptions=(*_assumptions(cases[-1], mode, inputs), *_replaced(case)),
+        assumptions=(*_assumptions(cases[-1], mode, inputs), *_replaced_wear_note(case)),
         quick=quick,
         untreaded=results[-1] if bare else None,
         walker=WearWalker(case.value("shoe.wear.wear_rate") or USUAL_WEAR_RATE, pair),
@@ -688,7 +688,7 @@ def _measures(case: Case) -> WearMeasures:
     return wear_measures(sole_shape(case))
 
 
-def _replaced(case: Case) -> tuple[Message, ...]:
+def _replaced_wear_note(case: Case) -> tuple[Message, ...]:
     """Return that the wear of the case itself counts for nothing; empty of a new shoe."""
     depth = case.shoe.wear.depth
     if depth == 0:

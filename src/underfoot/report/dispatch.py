@@ -40,7 +40,7 @@ _HOMES = {
 """Modules of this room that register the types of a room of the package."""
 
 
-def _registered(generic: Any, shown: object) -> Any:
+def _registered_function(generic: Any, shown: object) -> Any:
     """Return the function registered for the type of ``shown`` after its module is imported."""
     package, _, rest = type(shown).__module__.partition(".")
     if package != "underfoot":
@@ -55,7 +55,7 @@ def _registered(generic: Any, shown: object) -> Any:
 @singledispatch
 def figures(shown: object) -> FigureMakers:
     """Return the functions that draw an object, by name; the first is the one of ``plot``."""
-    chosen = _registered(figures, shown)
+    chosen = _registered_function(figures, shown)
     return {} if chosen is None else chosen(shown)
 
 
@@ -72,7 +72,7 @@ def plot(shown: object, *args: Any, **options: Any) -> Figure:
     Raises:
         InputError: A type without a figure, or a name that the object has no figure of.
     """
-    chosen = _registered(plot, shown)
+    chosen = _registered_function(plot, shown)
     if chosen is not None:
         return chosen(shown, *args, **options)
     return named_figure(figures(shown), type(shown).__name__, *args, **options)
@@ -90,7 +90,7 @@ def named_figure(makers: FigureMakers, kind: str, name: str | None = None) -> Fi
 @singledispatch
 def files(shown: Any) -> dict[str, Writer]:
     """Return the data files of an object: the function that writes each of them, by name."""
-    chosen = _registered(files, shown)
+    chosen = _registered_function(files, shown)
     if chosen is not None:
         return chosen(shown)
     return data_writers(shown)
@@ -99,7 +99,7 @@ def files(shown: Any) -> dict[str, Writer]:
 @singledispatch
 def sections(shown: Any, pictures: dict[str, bytes]) -> tuple[Sequence[PageSection], str]:
     """Return the sections of an object's page and its script; ``pictures`` are those drawn."""
-    chosen = _registered(sections, shown)
+    chosen = _registered_function(sections, shown)
     if chosen is not None:
         return chosen(shown, pictures)
     drawn = [
@@ -128,7 +128,7 @@ def write_report(
     Raises:
         InputError: A type without a page; a folder that holds something else.
     """
-    chosen = _registered(write_report, shown)
+    chosen = _registered_function(write_report, shown)
     if chosen is not None:
         return chosen(shown, folder, overwrite=overwrite, **options)
     if not isinstance(shown, Presentable):

@@ -85,7 +85,7 @@ def drawn_sole(dataset: Fields) -> DrawnSole:
 
     def counted_from(begins: tuple[slice, slice]) -> tuple[slice, slice]:
         (low, high), (left, right) = both
-        first, second = (each.start for each in begins)
+        first, second = (begin.start for begin in begins)
         return slice(low - first, high - first), slice(left - second, right - second)
 
     return DrawnSole(

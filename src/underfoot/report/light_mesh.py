@@ -46,7 +46,7 @@ def light_mesh(
     A corner has the mean of the cells around it, weighted as a triangle is interpolated; pressures
     are then scaled so that they carry the load of the cells in all. 0 where there is none.
     """
-    points, land, triangles = _refined(surface, sole, values)
+    points, land, triangles = _refine_mesh(surface, sole, values)
     triangles = _facing_down(points, triangles)
     if pressed and sole.pressed is not None:
         moved = _at(sole, sole.pressed - sole.height, points)
@@ -84,7 +84,7 @@ def spacing_for(sole: DrawnSole, *, designed: bool = True) -> float:
     return max(FINEST, float(np.sqrt(plan / (DESIGNED_CELLS if designed else CELLS))))
 
 
-def _refined(
+def _refine_mesh(
     surface: SurfaceMesh, sole: DrawnSole, values: dict[str, Floats]
 ) -> tuple[Floats, NDArray[np.bool_], NDArray[np.int64]]:
     """Return points, their land, and triangles, cut in four where a pressure is, until small."""

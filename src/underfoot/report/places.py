@@ -26,10 +26,10 @@ def slips_figure(choice: ShoeChoice) -> Figure:
     figure = new_figure(7.0, 1.2 + 0.45 * len(shoes))
     axes = figure.subplots()
     at = np.arange(len(shoes))
-    low, high = 100 * np.array([each.slips.interval for each in shoes]).T
+    low, high = 100 * np.array([shoe.slips.interval for shoe in shoes]).T
     axes.hlines(at, low, high, color="C0", lw=2)
-    axes.plot([100 * (each.slips.value or 0.0) for each in shoes], at, "o", color="C0")
-    axes.set_yticks(at, [f"{each.shoe.name} ({100 * each.best:.0f} %)" for each in shoes])
+    axes.plot([100 * (shoe.slips.value or 0.0) for shoe in shoes], at, "o", color="C0")
+    axes.set_yticks(at, [f"{shoe.shoe.name} ({100 * shoe.best:.0f} %)" for shoe in shoes])
     axes.set(xlim=(0, 100), xlabel="steps in a fluid that slip, %: mean, 95 % (chance of best)")
     axes.set_ylim(-0.6, len(shoes) - 0.4)
     return figure

@@ -71,7 +71,7 @@ def regime_figure(
 
 
 def _by_speed(ax: Axes, regimes: RegimeMap, fluids: Mapping[str, float]) -> None:
-    curves = {name: _interpolated(regimes, fluids[name]) for name in fluids}
+    curves = {name: _interpolate_lambda(regimes, fluids[name]) for name in fluids}
     shown = np.concatenate(list(curves.values())) if curves else regimes.lambda_ratio.ravel()
     floor = min(float(shown.min()) / 1.5, LAMBDA_LIMITS[0] / 2)
     ceiling = max(float(shown.max()) * 1.5, LAMBDA_LIMITS[1] * 2)
@@ -125,7 +125,7 @@ def _limits(
     return bool(crossed)
 
 
-def _interpolated(regimes: RegimeMap, viscosity: float) -> np.ndarray:
+def _interpolate_lambda(regimes: RegimeMap, viscosity: float) -> np.ndarray:
     """Return lambda over speed at one viscosity: a power law between the map's rows."""
     rows = np.log(regimes.viscosity)
     order = np.argsort(rows)

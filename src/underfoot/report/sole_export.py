@@ -53,7 +53,9 @@ class Exported:
         fields = ", ".join(f"{name} ({unit})" for name, unit in self.fields.items())
         colours = f"; colours: {self.coloured_by}" if self.coloured_by else ""
         told = f"; {self.remark}" if self.remark else ""
-        lengths = f"lengths in {self.length_unit}, {self.axes}"
+        lengths = Message(
+            "lengths in {length_unit}, {axes}", length_unit=self.length_unit, axes=self.axes
+        )
         return f"{self.path}: {lengths}; fields: {fields}{colours}{told}"
 
 
@@ -168,14 +170,17 @@ def _scene(
     result: Result, quantities: tuple[DrawnQuantity, ...], chosen: DrawnQuantity, pressed: bool
 ) -> _Scene:
     dataset = result.data
-    sole, values, remark, case = _fields(result, [each.name for each in quantities])
+    sole, values, remark, case = _fields(result, [quantity.name for quantity in quantities])
     if pressed and sole.pressed is None:
         raise DataError(
             "the result does not hold the shape of the pressed sole",
             where=result.name,
             remedy="It was made by an older version: run the case again",
         )
-    units = {each.name: str(dataset[each.name].attrs.get("units", "1")) for each in quantities}
+    units = {
+        quantity.name: str(dataset[quantity.name].attrs.get("units", "1"))
+        for quantity in quantities
+    }
     area = np.where(np.isfinite(sole.height), sole.spacing**2, np.nan)
     return _Scene(
         result.name,
@@ -195,9 +200,12 @@ def _position(dataset: Fields) -> str:
         return ""
     loads, own = dataset["position_fluid_load"], dataset["position_fluid_load"].attrs
     here, mean = quantity_text(own["as_described"], "N"), quantity_text(loads.values.mean(), "N")
-    return (
-        f"the fields are of the sole as the case describes it, one of {loads.values.size} "
-        f"positions or angles: {here} on the film there, {mean} in the mean"
+    return Message(
+        "the fields are of the sole as the case describes it, one of {size} positions "
+        "or angles: {here} on the film there, {mean} in the mean",
+        size=loads.values.size,
+        here=here,
+        mean=mean,
     )
 
 
@@ -221,7 +229,9 @@ def _fields(
         for name in {*AREAS} & {*names}:
             if AREAS[name] in dataset:
                 kept[name] = kept[name] * raw(dataset, AREAS[name])
-        remark = f"drawn from the solver's cells, as the sole can't be made: {error}"
+        remark = Message(
+            "drawn from the solver's cells, as the sole can't be made: {error}", error=error
+        )
         return sole, {name: sole.placed(field) for name, field in kept.items()}, remark, None
     return designed.drawn, {name: designed.field(name) for name in names}, "", case
 
@@ -264,7 +274,9 @@ def _write_glb(scene: _Scene, path: Path) -> Exported:
     place[: light.below] = (ends / sole.spacing + 1.5) / size
     colours = np.flip(picture.transpose(1, 0, 2), axis=0)
     lengths = [f"{1e3 * each:.2f} mm" for each in within]
-    told = f"edges of lugs within {', slivers at the rim within '.join(lengths)}"
+    told = Message(
+        "edges of lugs within {length}", length=", slivers at the rim within ".join(lengths)
+    )
     told = "; ".join(filter(None, (told, scene.remark)))
     material = trimesh.visual.material.PBRMaterial(
         baseColorTexture=Image.fromarray(colours[..., :3]),
@@ -307,7 +319,9 @@ def _write_ply(scene: _Scene, path: Path) -> Exported:
 
 def _write_obj(scene: _Scene, path: Path) -> Exported:
     surface = _surface(scene, scene.mesh.points * 1e3)
-    comment = f"lengths in mm, z up, x forward; colours of the corners: {scene.title}"
+    comment = Message(
+        "lengths in mm, z up, x forward; colours of the corners: {title}", title=scene.title
+    )
     path.write_text(surface.export(file_type="obj", header=comment), encoding="utf-8")
     return Exported(path, "mm", "z up, x forward", scene.title, {})
 

@@ -87,7 +87,7 @@ def write_solver_input(result: Result, path: Path | str) -> Exported:
         lines.append(f"*ELEMENT, TYPE=C3D15, ELSET={name}")
         lines += [", ".join(map(str, (k + 1, *(prisms[k] + 1)))) for k in chosen]
     for name, members in (("FOOT", foot), ("LAND", land)):
-        lines += [f"*NSET, NSET={name}", *_wrapped(np.unique(members) + 1)]
+        lines += [f"*NSET, NSET={name}", *_wrap_numbers(np.unique(members) + 1)]
     for name, (modulus, ratio) in rubbers.items():
         lines += [f"*MATERIAL, NAME={name}", "*ELASTIC", f"{1e-6 * modulus:.9g}, {ratio:.9g}"]
         lines.append(f"*SOLID SECTION, ELSET={name}, MATERIAL={name}")
@@ -109,9 +109,9 @@ def with_middle_nodes(nodes: Floats, *bodies: Ints) -> tuple[Floats, *tuple[Ints
     """
     ends = [np.sort(body[:, EDGES[: 3 if body.shape[1] == 3 else 9]], axis=2) for body in bodies]
     edges, place = np.unique(
-        np.concatenate([each.reshape(-1, 2) for each in ends]), axis=0, return_inverse=True
+        np.concatenate([end.reshape(-1, 2) for end in ends]), axis=0, return_inverse=True
     )
-    parts = np.split(len(nodes) + place.ravel(), np.cumsum([each[..., 0].size for each in ends]))
+    parts = np.split(len(nodes) + place.ravel(), np.cumsum([end[..., 0].size for end in ends]))
     made = [np.hstack([body, part.reshape(len(body), -1)])
             for body, part in zip(bodies, parts, strict=False)]  # fmt: skip
     return np.vstack([nodes, nodes[edges].mean(axis=1)]), *made
@@ -151,6 +151,6 @@ def _rows(numbers: Ints, values: Floats) -> Iterable[str]:
             for n, row in zip(numbers, values, strict=True))  # fmt: skip
 
 
-def _wrapped(members: Ints) -> list[str]:
+def _wrap_numbers(members: Ints) -> list[str]:
     """Return lines of sixteen numbers, as many as a line may hold."""
     return [", ".join(map(str, members[k : k + 16])) for k in range(0, len(members), 16)]

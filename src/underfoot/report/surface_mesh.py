@@ -82,11 +82,11 @@ def surface_mesh(
         _Edges((lines - np.array([x[0], y[0]])) / side + 1, reach / side) for lines in (edges, rim)
     )
     grid = _Grid.of(np.pad(height, 1, constant_values=np.nan), np.pad(land, 1), side)
-    ends, lines = _divided(*_lines(grid, cut, *known), LATTICE / side)
+    ends, lines = _divide_lines(*_lines(grid, cut, *known), LATTICE / side)
     inner = _lattice(grid, ends, LATTICE / side, NEAR / side)
     ends, lines, triangles, levels = _triangles(grid, ends, lines, inner)
     for _ in range(REFINED):
-        missed = _missed(grid, ends, inner, triangles, levels, APART / side)
+        missed = _most_missed_cells(grid, ends, inner, triangles, levels, APART / side)
         if not len(missed):
             break
         inner = np.concatenate([inner, missed])
@@ -331,16 +331,16 @@ def _lines(grid: _Grid, cut: CutCells | None, edges: _Edges, rim: _Edges) -> tup
         elif drawn[chain[1:-1]].all() and len(chain) > 2:
             numbered.append(_along_edge(places, chain, EDGE / grid.side))
         else:
-            numbered.append(_straightened(places, chain))
+            numbered.append(_straighten_chain(places, chain))
     lines = [places[np.concatenate(numbered)]]
     for ends, way in ways:
         path = np.concatenate([places[ends[:1]], way, places[ends[1:]]])
         path = path[_corners_of(path, EDGE / grid.side)]
         lines.append(np.stack([path[:-1], path[1:]], axis=1))
-    return _noded(np.concatenate(lines))
+    return _cut_where_lines_meet(np.concatenate(lines))
 
 
-def _noded(lines: Floats) -> tuple[Floats, Indices]:
+def _cut_where_lines_meet(lines: Floats) -> tuple[Floats, Indices]:
     """Return the places (n, 2) and lines (m, 2) of lines (k, 2, 2) cut where they meet.
 
     A corner that moved may lie beyond the place after it: its line comes back on itself, and no
@@ -383,14 +383,14 @@ def _chains(links: Indices, count: int) -> list[list[int]]:
     return chains
 
 
-def _straightened(places: Floats, chain: list[int]) -> Indices:
+def _straighten_chain(places: Floats, chain: list[int]) -> Indices:
     """Return the chain as the fewest lines (n, 2) by halving at the place farthest off.
 
     The places where lines meet move to where the lines through all places between them meet.
     """
     path = places[chain]
     at = _corners_of(path, TOLERANCE)
-    normal, offset = _fitted(path, at)
+    normal, offset = _fit_lines(path, at)
     ends = np.array(chain)[at]
     before, after = np.arange(len(at) - 2), np.arange(1, len(at) - 1)
     if chain[0] == chain[-1] and len(at) > 2:
@@ -486,7 +486,7 @@ def _corners_of(path: Floats, tolerance: float) -> Indices:
     return np.array(sorted(kept))
 
 
-def _fitted(path: Floats, at: Indices) -> tuple[Floats, Floats]:
+def _fit_lines(path: Floats, at: Indices) -> tuple[Floats, Floats]:
     """Return normal (n, 2) and offset (n,) of the lines through the places between ``at``."""
     x, y = path.T
     sums = np.cumsum(np.stack([x, y, x * x, x * y, y * y]), axis=1)
@@ -503,16 +503,16 @@ def _fitted(path: Floats, at: Indices) -> tuple[Floats, Floats]:
     return normal, (normal * through).sum(axis=1)
 
 
-def _divided(places: Floats, lines: Indices, most: float) -> tuple[Floats, Indices]:
+def _divide_lines(places: Floats, lines: Indices, most: float) -> tuple[Floats, Indices]:
     """Return places and lines none of which is longer than ``most`` cells."""
     while True:
         long = np.hypot(*(places[lines[:, 0]] - places[lines[:, 1]]).T) > most
         if not long.any():
             return places, lines
-        places, lines = _halved(places, lines, long)
+        places, lines = _halve_lines(places, lines, long)
 
 
-def _halved(places: Floats, lines: Indices, which: Mask) -> tuple[Floats, Indices]:
+def _halve_lines(places: Floats, lines: Indices, which: Mask) -> tuple[Floats, Indices]:
     middles = places[lines[which]].mean(axis=1)
     number = len(places) + np.arange(len(middles))
     halves = [np.stack([lines[which][:, k], number], axis=1) for k in (0, 1)]
@@ -552,7 +552,7 @@ def _triangles(
         missing = ~np.isin(_edge(lines, len(places)), edges)
         if turns == ROUNDS or not missing.any():
             break
-        ends, lines = _halved(ends, lines, missing)
+        ends, lines = _halve_lines(ends, lines, missing)
         turns += 1
     crossed = np.isin(edges, _edge(lines, len(places))) | (beside < 0)
     one, side = np.nonzero(~crossed)
@@ -574,7 +574,7 @@ def _edge(pairs: Indices, count: int) -> Indices:
     return pairs.min(axis=1) * count + pairs.max(axis=1)
 
 
-def _missed(
+def _most_missed_cells(
     grid: _Grid, ends: Floats, inner: Floats, triangles: Indices, levels: Indices, apart: float
 ) -> Floats:
     """Return the cells (n, 2) that triangles miss most, at most one in ``apart`` cells."""

@@ -28,12 +28,12 @@ def thumbnail(case: Case) -> str:
     cache, key = Cache("thumbnails"), content_hash(shape, case.shoe.wear)
     if (stored := cache.load(key)) is not None:
         return str(stored["svg"])
-    svg = _drawn(case)
+    svg = _draw_sole(case)
     cache.store(key, {"svg": svg})
     return svg
 
 
-def _drawn(case: Case) -> str:
+def _draw_sole(case: Case) -> str:
     sole = sole_map(case, case.numerics.quick_grid_spacing, silent)
     fine = max(LEAST, float(np.ptp((sole.whole or sole).x)) / CELLS)
     if fine < sole.spacing:

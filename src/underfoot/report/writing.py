@@ -18,6 +18,7 @@ from typing import Any
 from underfoot.core import Cancelled, UnderfootError
 from underfoot.core.files import whole_folder
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.remark import Message
 from underfoot.core.text import harmless
 
 Writer = Callable[[Path], object]
@@ -68,7 +69,7 @@ def write_folder(
                 failed[name] = failure
         has_page = (staging / "report.html").exists()
     lost = {name: write for name, write in data.items() if name in failed}
-    failures = (*failed.values(), *([_rescued(lost)] if lost else []))
+    failures = (*failed.values(), *([_rescue(lost)] if lost else []))
     return Written(folder, folder / "report.html" if has_page else None, failures)
 
 
@@ -137,18 +138,25 @@ def _reason(error: Exception) -> str:
         return f"{(error.strerror or str(error)).lower()}; {remedy}."
     if isinstance(error, ImportError):
         package = (error.name or str(error)).partition(".")[0]
-        return f"the package {package} is missing; install it with: pip install {package}"
-    return f"internal error ({type(error).__name__}: {error}); please report it."
+        return Message(
+            "the package {package} is missing; install it with: pip install {package}",
+            package=package,
+        )
+    return Message(
+        "internal error ({name}: {error}); please report it.",
+        name=type(error).__name__,
+        error=error,
+    )
 
 
-def _rescued(lost: Mapping[str, Writer]) -> str:
+def _rescue(lost: Mapping[str, Writer]) -> str:
     """Write what was computed into a folder for temporary files and return where it is."""
     folder = Path(tempfile.mkdtemp(prefix="underfoot-"))
     saved = [name for name, write in lost.items() if not _failure(folder / name, write)]
     if not saved:
         folder.rmdir()
-        return f"Not saved anywhere: {', '.join(lost)}."
-    return f"Saved in {folder} instead: {', '.join(saved)}."
+        return Message("Not saved anywhere: {lost}.", lost=", ".join(lost))
+    return Message("Saved in {folder} instead: {saved}.", folder=folder, saved=", ".join(saved))
 
 
 def _csv_cell(value: Any) -> Any:

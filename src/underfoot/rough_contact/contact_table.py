@@ -453,7 +453,9 @@ def _column(part: _Part) -> dict[str, np.ndarray]:
             yield steady_sliding(heights, *given, layer_thickness=part.layer_thickness)
 
     floor = part.floor_heights
-    return _averaged(part, contacts_of(part.heights), None if floor is None else contacts_of(floor))
+    return _average_part(
+        part, contacts_of(part.heights), None if floor is None else contacts_of(floor)
+    )
 
 
 def _columns_on_card(parts: list[_Part]) -> Iterator[tuple[int, dict[str, np.ndarray]]]:
@@ -469,10 +471,10 @@ def _columns_on_card(parts: list[_Part]) -> Iterator[tuple[int, dict[str, np.nda
 
     contacts, frictions = contacts_of("heights"), contacts_of("floor_heights")
     for n, part in enumerate(parts):
-        yield n, _averaged(part, contacts, None if part.floor_heights is None else frictions)
+        yield n, _average_part(part, contacts, None if part.floor_heights is None else frictions)
 
 
-def _averaged(
+def _average_part(
     part: _Part, contacts: Iterator[SteadySliding], frictions: Iterator[SteadySliding] | None
 ) -> dict[str, np.ndarray]:
     """Return the column of a part from the next contacts, one for each pressure."""

@@ -61,7 +61,7 @@ def flow_factors(
     Source: Reynolds equation without cavitation or shear flow; the average-flow idea is that of
     Patir and Cheng (1978) J. Lubr. Technol. 100:12-17, here on the deformed gap itself.
     """
-    g = _checked(gap)
+    g = _check_gap(gap)
     g = np.where(g > closed, g, 0.0)
     mean = float(g.mean())
     if mean == 0.0:
@@ -177,7 +177,7 @@ def _linear_gap_face(gap: np.ndarray, axis: int) -> np.ndarray:
     return np.where(total > 0.0, 2.0 * (gap * other) ** 2 / np.where(total > 0.0, total, 1.0), 0.0)
 
 
-def _checked(gap: ArrayLike) -> np.ndarray:
+def _check_gap(gap: ArrayLike) -> np.ndarray:
     g = host_array(gap, "gap", "an array of NumPy, m").astype(float, copy=False)
     if g.ndim != 2 or min(g.shape) < 3:
         raise InputError(

@@ -254,7 +254,7 @@ def contacts_of(
             exact=exact,
             tolerance=tolerance,
             max_steps=settings.max_iterations,
-            report=lambda error: progress("rough contact", _done(error, tolerance), error),
+            report=lambda error: progress("rough contact", _fraction_done(error, tolerance), error),
         )
         contacts = []
         for n, (pressure, speed) in enumerate(loads):
@@ -382,6 +382,6 @@ def _flat(height: Any, pressure: float, speed: float, xp: Any) -> SteadySliding:
     )
 
 
-def _done(error: float, tolerance: float) -> float:
+def _fraction_done(error: float, tolerance: float) -> float:
     """Return the fraction done on a logarithmic scale from an error of 1."""
     return min(1.0, max(0.0, math.log(max(error, 1e-300)) / math.log(tolerance)))

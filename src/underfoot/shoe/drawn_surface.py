@@ -6,7 +6,7 @@ import numpy as np
 
 from underfoot.core.arrays import Array, Mask
 
-from ._kernels.regions import grown, nearest_true, pieces
+from ._kernels.regions import grow_mask, nearest_true, pieces
 from .geometry import SoleSurface
 
 _RIM = 0.5
@@ -71,7 +71,7 @@ def drawn_surface(surface: SoleSurface) -> SoleSurface:
     base = np.where(land, height, surface.land_base)
     if floor.any():
         near = nearest_true(floor)
-        close = grown(floor, _ON_WALLS)
+        close = grow_mask(floor, _ON_WALLS)
         base = np.where(channel & close, (height - lug)[near], base)
         height = np.where(channel & close, (base + lug), height)
     return replace(surface, height=height, land=land, base=base)

@@ -242,7 +242,7 @@ def free_land(
             level = nodes.repaired(height - cut, held)
             land = 0.0 if level is None else nodes.share(level)
             if level is not None and abs(land - share) <= LAND_ERROR:
-                return _outlined(nodes, level)
+                return _outline_land(nodes, level)
             if land > share:
                 low, most, reached[1] = cut, level, min(reached[1], land)
             else:
@@ -260,7 +260,7 @@ def free_land(
     )
 
 
-def _outlined(nodes: _Cell, level: Array) -> FreeLand:
+def _outline_land(nodes: _Cell, level: Array) -> FreeLand:
     x, y = nodes.places
     filled = contour_generator(
         y, x, level, quad_as_tri=True, fill_type=FillType.OuterOffset

@@ -70,7 +70,7 @@ def heel_map(
     if sine == 0.0:
         x = target
     else:
-        x = _solved(along, target, y_map, -2 * margin * spacing - heel.length, 3 * heel.length)
+        x = _solve_place(along, target, y_map, -2 * margin * spacing - heel.length, 3 * heel.length)
     inside = heel.inward_distance(x, y_map) > 0
     height, land, tread_depth = cut_heel(heel, x, y_map, spacing)
     stretch = np.gradient(x, axis=0)
@@ -110,7 +110,12 @@ def _heel_slits(
 ) -> Slits | None:
     """Return the sipes that the grid is too coarse for, at ``places`` (x, y, dx per cell)."""
     tread = heel.tread
-    if tread is None or tread.depth == 0 or tread.sipes is None or _shown(tread.sipes, spacing):
+    if (
+        tread is None
+        or tread.depth == 0
+        or tread.sipes is None
+        or _shows_slits(tread.sipes, spacing)
+    ):
         return None
     x, y, stretch = places
     inside, land = masks
@@ -132,7 +137,7 @@ def _heel_slits(
     )
 
 
-def _shown(sipes: Sipes, spacing: float) -> bool:
+def _shows_slits(sipes: Sipes, spacing: float) -> bool:
     """Return whether cells of ``spacing`` (m) show slits as channels."""
     return spacing <= sipes.width / CELLS_REFUSED * (1 + 1e-9)
 
@@ -169,7 +174,7 @@ def _few_cells(quantity: str, cells: float) -> list[Breach]:
     return breaches("grid", {quantity: tested}, {quantity: cells})
 
 
-def _solved(
+def _solve_place(
     along: Callable[[Array, Array], Array], target: Array, y: Array, low: float, high: float
 ) -> Array:
     """Return the x of the sole whose place on the floor is ``target``, between two x."""
@@ -210,7 +215,7 @@ def cut_heel(
         channel = into > 0
         height, land = _cut(height, land, channel, unworn + tread.depth, base)
         sipes = tread.sipes
-        if sipes is not None and _shown(sipes, spacing):
+        if sipes is not None and _shows_slits(sipes, spacing):
             slit = ~channel & (tread.slit_distance(x, y) > 0)
             height, land = _cut(height, land, slit, unworn + sipes.depth, base)
     arc = heel.arc_channel
@@ -227,7 +232,7 @@ def channel_level(heel: SoleShape, x: Array, y: Array, spacing: float = 0.0) -> 
     if tread is not None and tread.depth > 0:
         sipes = tread.sipes
         level = np.minimum(tread.channel_distance(x, y), depth + tread.depth)
-        if sipes is not None and _shown(sipes, spacing):
+        if sipes is not None and _shows_slits(sipes, spacing):
             slit = np.minimum(tread.slit_distance(x, y), depth + sipes.depth)
             level = np.maximum(level, slit)
     if arc is not None and arc.depth > 0:
@@ -252,8 +257,8 @@ def _resolution(heel: SoleShape, spacing: float) -> list[Breach]:
     if tread is not None and tread.depth > 0:
         features.append(("tread.channel_width", "channel", tread.channel_width))
         features.append(("tread.lug_width", "lug", tread.smallest_lug))
-        features += [("tread.grooves", "groove", each.width) for each in tread.grooves]
-        if tread.sipes is not None and _shown(tread.sipes, spacing):
+        features += [("tread.grooves", "groove", groove.width) for groove in tread.grooves]
+        if tread.sipes is not None and _shows_slits(tread.sipes, spacing):
             features.append(("tread.sipes.width", "sipe", tread.sipes.width))
     if heel.arc_channel is not None and heel.arc_channel.depth > 0:
         features.append(("arc_channel.width", "arc channel", heel.arc_channel.width))

@@ -194,10 +194,10 @@ def _way_out(offsets: NDArray[np.intp], y: float) -> tuple[float, int]:
     along, across = offsets[length <= shortest + 0.5].T
     lengthwise = np.abs(along) >= np.abs(across)
     sides = np.where(lengthwise, np.where(along > 0, 0, 1), np.where(across > 0, 2, 3))
-    return shortest, next(side for side in _preferred(y) if side in sides)
+    return shortest, next(side for side in _side_order(y) if side in sides)
 
 
-def _preferred(y: float) -> tuple[int, ...]:
+def _side_order(y: float) -> tuple[int, ...]:
     """Return the sides in the order in which equal ways are taken from a place at ``y`` (m).
 
     Along the shoe, to the front, then away from the middle line: mirrored lugs get mirrored advice.
@@ -233,19 +233,19 @@ def _best_grooves(
             within = (forward > -wide / 2) & (forward < lengths[side, k])
             cut |= within & (np.abs(aside) < wide / 2) & (numbers == number)
         # lugs don't touch: one system holds them all
-        fallen = _fallen(full & ~cut, cut, pressure, conductance)
+        fallen = _pressure_fall(full & ~cut, cut, pressure, conductance)
         relieved = np.bincount(numbers.ravel(), (fallen * area).ravel(), load.size)
         reliefs[side] = relieved[lugs] / load[lugs]
     grooves = []
     for length, relief, place in zip(lengths.T, reliefs.T, y[peaks[:, 1]], strict=False):
         best = relief >= NEARLY * relief.max()
         best &= length <= length[best].min() + 1
-        side = next(side for side in _preferred(float(place)) if best[side])
+        side = next(side for side in _side_order(float(place)) if best[side])
         grooves.append((float(length[side]), side, float(relief[side])))
     return grooves
 
 
-def _fallen(free: Mask, groove: Mask, pressure: Array, conductance: Array) -> Array:
+def _pressure_fall(free: Mask, groove: Mask, pressure: Array, conductance: Array) -> Array:
     """Return -d (nx, ny), 0 beyond the free cells and the groove."""
     from scipy.sparse import csr_matrix
 

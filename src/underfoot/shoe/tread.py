@@ -193,7 +193,13 @@ class Tread:
             if value is not None and name in lengths:
                 positive(value, f"tread.{name}")
         most = math.radians(75 if self.pattern == "chevrons" else 180)
-        between(self.angle, -most, most, "tread.angle", f"at most {math.degrees(most):g} deg")
+        between(
+            self.angle,
+            -most,
+            most,
+            "tread.angle",
+            Message("at most {degrees:g} deg", degrees=math.degrees(most)),
+        )
         if self.ring_width is not None and self.ring_width >= self.lug_width / 2:
             raise InputError(
                 Message(
@@ -313,7 +319,7 @@ class Tread:
         def new(place: tuple[float, float]) -> tuple[float, float]:
             return place[0] + shift[0], place[1] + shift[1]
 
-        grooves = tuple(replace(each, place=new(each.place)) for each in self.grooves)
+        grooves = tuple(replace(groove, place=new(groove.place)) for groove in self.grooves)
         return replace(self, offset=new(self.offset), grooves=grooves)
 
     def _before_yaw(self, x: Array, y: Array) -> tuple[Array, Array]:
@@ -336,7 +342,7 @@ class Tread:
         On a lug the value is minus the distance to its nearest edge.
         """
         x, y = self._before_yaw(x, y)
-        grooves = (each.channel_distance(x, y) for each in self.grooves)
+        grooves = (groove.channel_distance(x, y) for groove in self.grooves)
         return np.maximum.reduce([self._pattern_distance(x, y), *grooves])
 
     def _pattern_distance(self, x: Array, y: Array) -> Array:

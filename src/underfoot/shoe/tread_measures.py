@@ -132,7 +132,7 @@ def tread_map(
         land, channel = inside.copy(), np.zeros_like(inside)
     # the edges of lugs and the rim may be rounded: what lies between other land is known best
     with np.errstate(invalid="ignore"):
-        flat = land & (raised <= _reached(noise))
+        flat = land & (raised <= _least_height(noise))
     sound = across_channels(height, flat & ~rim(inside, steps))
     base = carried_on(height, land)
     base = np.where(land | ~np.isfinite(sound), base, sound)
@@ -222,10 +222,10 @@ def reached_by_floor(height: Array, land: Mask, spacing: float) -> Mask:
     above = np.minimum(height - rolled, _rounded_rim(height, spacing, onto))
     noise = height_noise(np.where(land, height, np.nan))
     with np.errstate(invalid="ignore"):
-        return land & (above <= _reached(noise))
+        return land & (above <= _least_height(noise))
 
 
-def _reached(noise: float) -> float:
+def _least_height(noise: float) -> float:
     return max(_REACHED, NOISE_FACTOR * noise)
 
 

@@ -52,6 +52,7 @@ def tread_periods(surface: SoleSurface) -> Array:
         pitch = sum(
             float(np.median(local_width(mask, surface.spacing)[mask]))
             for mask in (channel, surface.land)
+            if mask.any()
         )
         return np.diag([min(pitch, LONGEST_PERIOD)] * 2)
     return np.array(periods) * surface.spacing

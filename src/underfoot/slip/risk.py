@@ -83,7 +83,7 @@ def slip_chances(
             population is off by; None draws them.
     """
     drawn = np.clip(np.asarray(acof, dtype=float), 0.0, LARGEST_ACOF)
-    normal = normal or _named(drawn.size)
+    normal = normal or _draws_by_name(drawn.size)
     people = rcof.drawn(normal)
     known = getattr(model, "drawn", None)
     if known is None:
@@ -196,7 +196,7 @@ def acof_draws(acof: SourcedValue, samples: ArrayLike | None = None) -> Array | 
     return acof.value + acof.uncertainty * middle[order]
 
 
-def _named(count: int) -> Callable[[str], Array]:
+def _draws_by_name(count: int) -> Callable[[str], Array]:
     return lambda name: normal_draws(0, name, count)
 
 

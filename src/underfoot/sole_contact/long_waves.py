@@ -237,7 +237,7 @@ def _bricks(body: SoleBody, near: NDArray[np.bool_]) -> tuple[Bricks, Splines]:
     x, y = net.places
     thickness = _at(sole, body.thickness, x, y)
     side = float(net.x[2] - net.x[0])
-    shares = _graded(float(body.thickness[near].mean()), side)
+    shares = _layer_shares(float(body.thickness[near].mean()), side)
     levels = [thickness * share for share in _halves(shares)]
     modulus, ratio = [body.modulus] * (shares.size - 1), [body.poisson_ratio] * (shares.size - 1)
     if body.midsole is not None:
@@ -252,8 +252,8 @@ def _bricks(body: SoleBody, near: NDArray[np.bool_]) -> tuple[Bricks, Splines]:
     nodes = np.stack([base + level[..., None] * normal for level in levels], axis=2)
     capped = np.minimum(ratio, NEARLY_INCOMPRESSIBLE)
     whole = sole.whole or sole
-    cover = _covered(whole, whole.inside, net)
-    pressed = cover * _covered(sole, near, net)
+    cover = _covered_shares(whole, whole.inside, net)
+    pressed = cover * _covered_shares(sole, near, net)
     return Bricks(nodes, cover, pressed, np.array(modulus), capped), splines
 
 
@@ -262,7 +262,7 @@ def _halves(places: Array) -> Array:
     return np.interp(np.arange(2 * places.size - 1) / 2, np.arange(places.size), places)
 
 
-def _graded(thickness: float, side: float) -> Array:
+def _layer_shares(thickness: float, side: float) -> Array:
     """Return the shares 0 to 1 of the outsole's thickness at which its layers of bricks end."""
     steps = [side]
     while sum(steps) < thickness or len(steps) < 2:
@@ -278,7 +278,7 @@ def _at(sole: SoleMap, field: Array, x: Array, y: Array) -> Array:
     return np.asarray(map_coordinates(field, at, order=1, mode="nearest"))
 
 
-def _covered(sole: SoleMap, cells: NDArray[np.bool_], net: Net) -> Array:
+def _covered_shares(sole: SoleMap, cells: NDArray[np.bool_], net: Net) -> Array:
     """Return the share of each quarter of a square (2 nx, 2 ny) that some cells cover.
 
     A cell's width from it counts: the net ends at the rim, cells do so in steps.

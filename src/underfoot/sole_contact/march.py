@@ -131,7 +131,7 @@ class March:
         while True:
             demand = demand_after(duration)
             if demand.settles and len(self._settling) == 2:
-                start = _calmed(*self._settling)
+                start = _calm_start(*self._settling)
             problem = replace(
                 self.problem, clearance=demand.clearance, wall_speed=demand.wall_speed
             )
@@ -237,7 +237,7 @@ class March:
         return np.where(self.film, self.state.fraction * held, pool)
 
 
-def _calmed(before: tuple[State, State], last: tuple[State, State]) -> State:
+def _calm_start(before: tuple[State, State], last: tuple[State, State]) -> State:
     """Return where pressures and gaps should start so that a step ends where it starts.
 
     What a step takes from its start (faces that lean, edges that let in) overshoots the steady

@@ -127,7 +127,7 @@ class SlidingSole:
         self._typical_force = typical_force
         self._speed: float | None = None
         cells = sole.cells or row_cells(sole)
-        clearance = _bounded(cells.clearance)
+        clearance = _bound_clearance(cells.clearance)
         extent = max(cells.shape) * sole.spacing
         if before and before.cells is cells and before.compliance.squares is compliance:
             between_cells = before.compliance
@@ -420,7 +420,7 @@ class SlidingSole:
         return time / (time + self.settings.rise_time) if end is None else min(time / end, 1.0)
 
     def _clearance(self, angle: float) -> Array:
-        return _bounded(
+        return _bound_clearance(
             _rolled_cells(self.sole, angle - self._map_angle, self._march.problem.cells)
         )
 
@@ -533,7 +533,7 @@ def asperity_scale(law: PressureGapLaw, pressure: float) -> tuple[float, float]:
     return decay, touch
 
 
-def _bounded(clearance: Array) -> Array:
+def _bound_clearance(clearance: Array) -> Array:
     """Return clearances from 0 to FAR: what the solver takes for outside is far, not infinite."""
     bounded = np.minimum(np.where(np.isfinite(clearance), clearance, FAR), FAR)
     return bounded - bounded.min()

@@ -205,7 +205,7 @@ def slip_tester_grid(
 
 def mass_profile(study: SlipStudy) -> MisfitProfile:
     """Return the profile of the share of the body that moves with the heel, from G.5's mean."""
-    mean = _published("peak_slipping_speed_over_sensors_untreaded")
+    mean = _published_value("peak_slipping_speed_over_sensors_untreaded")
     speeds = np.array([study.peak_speed_at(effective_mass=share) or math.nan for share in MASSES])
     misfit = chi_square(speeds[:, None], [mean[0]], [mean[1] / math.sqrt(11)])
     return profile("share of the body moving with the heel", "1", MASSES, misfit, data=1)
@@ -217,7 +217,7 @@ def contact_profile(study: SlipStudy) -> MisfitProfile:
     The film is that of the case; the contact has one COF at every speed.
     """
     assert study.sole is not None
-    mean = _published("peak_slipping_speed_over_sensors_treaded")
+    mean = _published_value("peak_slipping_speed_over_sensors_treaded")
     speeds = np.array([treaded_speed(study, study.sole, cof) for cof in CONTACTS])
     # 0.06 m/s is what a marker moves at without any slip (required_friction)
     error = math.hypot(mean[1] / math.sqrt(6), 0.06)
@@ -225,7 +225,7 @@ def contact_profile(study: SlipStudy) -> MisfitProfile:
     return profile("contact COF under lugs, 90 % glycerol", "1", CONTACTS, misfit, data=1)
 
 
-def _published(name: str) -> tuple[float, float]:
+def _published_value(name: str) -> tuple[float, float]:
     value = Catalogue.load().entry("published", "human_slips_g5").sourced(name, "m/s")
     return value.value or 0.0, value.uncertainty or 0.0
 

@@ -142,7 +142,7 @@ def compute(options: Options) -> Computed:
     sources, highest_prior = _sources(own, [results[PRIORS, one] for one in laboratories])
     after, known = _after(own)
     width, inside_known = _where_known(own)
-    sides, shoes = _compared(options)
+    sides, shoes = _compare_sources(options)
     effects, shares = _effects(sides)
     whole, inside = _whole(shoes)
     slips, shares_of_slips = _slips(options)
@@ -162,7 +162,7 @@ def compute(options: Options) -> Computed:
             "pair.inside_known": ComputedQuantity.of(inside_known),
             "others.above_rivals": ComputedQuantity.of(best.r2 - strongest.r2),
             "others.gain": ComputedQuantity.of(
-                best.log_density - max(one.log_density for one in rivals)
+                best.log_density - max(rival.log_density for rival in rivals)
             ),
             "priors.r2": ComputedQuantity.of(highest_prior),
             "pair.r2": ComputedQuantity.of(whole_best.r2),
@@ -217,7 +217,7 @@ def whole_cof(case: Case) -> Mapping[str, Any]:
         return {"reason": np.array(" ".join(str(error).split()))}
 
 
-def _compared(
+def _compare_sources(
     options: Options,
 ) -> tuple[list[tuple[Contrast, Side, Side]], list[tuple[PublishedCondition, Stand, Side]]]:
     sources = [s for s in corpus() if not options.quick or s.name in QUICK_SOURCES]
@@ -315,7 +315,7 @@ def _whole(
             {
                 "source": condition.source,
                 "condition": condition.id,
-                "measured": _measured(reading),
+                "measured": _reading_text(reading),
                 "predicted median": side.cof,
                 "low 95 %": low,
                 "high 95 %": high,
@@ -376,7 +376,7 @@ def _basis(
     return StudyTable("basis", title, columns, list(dict.fromkeys(rows)))
 
 
-def _measured(reading: PublishedReading) -> str:
+def _reading_text(reading: PublishedReading) -> str:
     if not reading.is_censored:
         return f"{reading.low:.3g}"
     words = {"lower": f"at least {reading.low:.3g}", "upper": f"at most {reading.high:.3g}"}

@@ -207,7 +207,7 @@ def _of(effect: PublishedEffect, source: Source) -> Iterator[Contrast]:
         low, high = content["low"], content["high"]
         first_m, last_m = (to_si(end, "m", where=effect.id) for end in (first, last))
         step = 1e3 * (last_m - first_m)
-        pairs = [(_nested(content["per"], last), _nested(content["per"], first), low > 0)]
+        pairs = [(_nest_path(content["per"], last), _nest_path(content["per"], first), low > 0)]
     elif effect.kind == "ratio":
         low = content.get("low", content.get("ratio"))
         high = content.get("high", content.get("ratio"))
@@ -221,10 +221,10 @@ def _of(effect: PublishedEffect, source: Source) -> Iterator[Contrast]:
             yield Contrast(
                 source.name,
                 effect.id + (f": {over['wear']}" if effect.kind == "order" else ""),
-                fluid or _fluid(_merged(shared, over), _merged(shared, under)),
+                fluid or _fluid(_merge_settings(shared, over), _merge_settings(shared, under)),
                 _topic(over, under),
-                stand(_merged(shared, over)),
-                stand(_merged(shared, under)),
+                stand(_merge_settings(shared, over)),
+                stand(_merge_settings(shared, under)),
                 rises,
                 low,
                 high,
@@ -244,12 +244,12 @@ def _fluid(over: Mapping[str, Any], under: Mapping[str, Any]) -> str:
     return ", ".join(dict.fromkeys(str(table.get("fluid", "not given")) for table in tables))
 
 
-def _nested(path: str, item: Any) -> dict[str, Any]:
+def _nest_path(path: str, item: Any) -> dict[str, Any]:
     head, _, rest = path.partition(".")
-    return {head: _nested(rest, item) if rest else item}
+    return {head: _nest_path(rest, item) if rest else item}
 
 
-def _merged(base: Mapping[str, Any], more: Mapping[str, Any]) -> dict[str, Any]:
+def _merge_settings(base: Mapping[str, Any], more: Mapping[str, Any]) -> dict[str, Any]:
     both = {key: {**base[key], **more[key]} for key in base.keys() & more.keys() if key == "tread"}
     return {**base, **more, **both}
 

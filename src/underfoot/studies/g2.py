@@ -635,7 +635,7 @@ def _error_figure(comparison: MechanismComparison) -> Figure:
 
 
 def _levels_figure(fluids: Mapping[str, BoundaryFriction]) -> Figure:
-    decay = viscous_decay([one for one in fluids.values() if one.tau_hydro is not None])
+    decay = viscous_decay([fluid for fluid in fluids.values() if fluid.tau_hydro is not None])
     left, right = [], []
     for k, (name, label) in enumerate(LABELS.items()):
         one = fluids[name]

@@ -540,7 +540,7 @@ def held_films(options: Options) -> list[HeldFilm]:
 
 def _wedge_squeeze_figure(films: Sequence[HeldFilm], passages: Mapping[str, Array]) -> Figure:
     """Return film load against dwell time, viscosity, lateral distance and speed (500 N)."""
-    by = {(one.viscosity, one.speed): one for one in films}
+    by = {(film.viscosity, film.speed): film for film in films}
     dwell, fast = [], []
     for viscosity, style in zip(CURVES, ("-", "--", ":"), strict=True):
         label, one = f"{1e3 * viscosity:g} mPa s", by[viscosity, 0.5]

@@ -359,7 +359,7 @@ def compare_mechanisms(catalogue: Catalogue) -> MechanismComparison:
     fluids = {one.fluid: one for one in measured}
     points = {name: fluid_points(one, rq=pin.sole_rq) for name, one in fluids.items()}
     base = points[CALIBRATION_FLUID]
-    others = [one for one in points.values() if one is not base]
+    others = [point for point in points.values() if point is not base]
     series = [
         one
         for one in roughness_series(catalogue)

@@ -435,7 +435,7 @@ def fit_law(
 
     first = np.append(prior[:, 0], np.log((SD_SOURCE, 0.3, 0.1, 0.4)))
     width = np.append(prior[:, 1], np.full(4, 0.5))
-    points, weight = _sampled(log_posterior, first, width, 5 * steps, generator)
+    points, weight = _sample_density(log_posterior, first, width, 5 * steps, generator)
     rows_kept = generator.choice(weight.size, DRAWS_KEPT, p=weight)
     return PairPosterior(
         law,
@@ -454,7 +454,7 @@ def _log_prior(prior: Array, theta: Array, ln_spread: Array) -> Array:
     return value + (ln_spread[:, 1:] - 0.5 * (spread[:, 1:] / SPREAD_PRIOR[1:]) ** 2).sum(axis=1)
 
 
-def _sampled(
+def _sample_density(
     log_density: Callable[[Array], Array],
     first: Array,
     width: Array,

@@ -52,16 +52,16 @@ def sample_inputs(
     if any(not factor > 0 for factor in factors):
         raise InputError(f"{list(factors)}", where="factors", allowed="above 0")
     nominal = sensitivity.nominal.number(name)
-    centre = _scaled(nominal, least, most)
-    start = centre if value is None else _scaled(value, least, most)
+    centre = _logit(nominal, least, most)
+    start = centre if value is None else _logit(value, least, most)
     if math.isnan(start) or math.isnan(centre):
         return np.full(draws, np.nan)
     random = np.random.default_rng(seed)
     total = np.full(draws, start)
     for effect in sensitivity.effects:
         z = np.clip(random.standard_normal(draws), -LARGEST, LARGEST)
-        low = _scaled(effect.low.number(name), least, most) - centre
-        high = _scaled(effect.high.number(name), least, most) - centre
+        low = _logit(effect.low.number(name), least, most) - centre
+        high = _logit(effect.high.number(name), least, most) - centre
         if math.isnan(low) and math.isnan(high):
             continue
         low = -high if math.isnan(low) else low
@@ -73,7 +73,7 @@ def sample_inputs(
     return np.maximum(odds if math.isinf(most) else most * odds / (1.0 + odds), least)
 
 
-def _scaled(value: float, least: float, most: float) -> float:
+def _logit(value: float, least: float, most: float) -> float:
     """Return ln N, or ln N / (M - N), of a number held between both bounds; nan of nan."""
     if math.isnan(value):
         return value

@@ -180,7 +180,9 @@ def read_source(path: Path) -> Source:
                 where=f"{path.name}: {key}",
                 remedy=f'Write {key} = "..." at the head of the file',
             )
-    _known(table, (*HEAD, "laboratory", "verified", "conditions", "condition", "effect"), path.name)
+    _check_keys(
+        table, (*HEAD, "laboratory", "verified", "conditions", "condition", "effect"), path.name
+    )
     shared = table.get("conditions", {})
     laboratory = str(table.get("laboratory", path.stem))
     return Source(
@@ -214,7 +216,7 @@ def _conditions(source: str, entry: dict[str, Any]) -> Iterator[PublishedConditi
 def _condition(
     source: str, name: str, entry: dict[str, Any], reading: PublishedReading, where: str
 ) -> PublishedCondition:
-    _known(entry, (*NUMBERS, *WORDS), where)
+    _check_keys(entry, (*NUMBERS, *WORDS), where)
     members = tuple(
         _condition(
             source,
@@ -258,7 +260,7 @@ def _readings(
     lacking = KINDS[kind] - measured.keys()
     if lacking:
         raise DataError(f"{', '.join(sorted(lacking))} missing", where=f"{where}.measured")
-    _known(
+    _check_keys(
         measured, (*KINDS[kind], "kind", "sd", "sd_ln", "cof_bl_se", "derived"), f"{where}.measured"
     )
     derived = str(measured.get("derived", ""))
@@ -301,7 +303,7 @@ def _span(item: Any, key: str, where: str) -> Span:
     if not isinstance(item, dict):
         value = _number(item, unit, place)
         return Span(value, value)
-    _known(item, ("value", "range", "note", "assumed"), place)
+    _check_keys(item, ("value", "range", "note", "assumed"), place)
     note, assumed = str(item.get("note", "")), bool(item.get("assumed", False))
     if "range" in item:
         low, high = (_number(end, unit, place) for end in item["range"])
@@ -332,7 +334,7 @@ def _effect(source: str, entry: dict[str, Any]) -> PublishedEffect:
     return PublishedEffect(source, name, kind, entry)
 
 
-def _known(table: Mapping[str, Any], keys: tuple[str, ...], where: str) -> None:
+def _check_keys(table: Mapping[str, Any], keys: tuple[str, ...], where: str) -> None:
     for key in table:
         if key not in keys:
             raise _unknown(f'key "{key}"', key, keys, where)

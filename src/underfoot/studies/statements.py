@@ -287,12 +287,12 @@ def _statement(study_name: str, table: Mapping[str, Any]) -> Statement:
         table["text"],
         table["place"],
         claim,
-        table.get("shown") or _shown(claim, printed, unit, table.get("deviation")),
+        table.get("shown") or _claim_text(claim, printed, unit, table.get("deviation")),
         names,
         unit,
         factor,
         si_unit,
-        _accepted(claim, numbers, below, above),
+        _accepted_range(claim, numbers, below, above),
         max(below, above),
         reason,
         round(math.copysign(1, sum(numbers))) if table.get("effect") else 0,
@@ -369,7 +369,7 @@ def _tolerance(
     )
 
 
-def _accepted(
+def _accepted_range(
     claim: Claim, numbers: Sequence[float], below: float, above: float
 ) -> tuple[float, float]:
     match claim:
@@ -387,7 +387,7 @@ def _accepted(
             return math.nan, math.nan
 
 
-def _shown(claim: Claim, printed: Any, unit: str, deviation: Any) -> str:
+def _claim_text(claim: Claim, printed: Any, unit: str, deviation: Any) -> str:
     tail = f" {unit}" if unit else ""
     match claim:
         case Claim.ORDER:

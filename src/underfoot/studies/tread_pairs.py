@@ -59,9 +59,9 @@ def computed_pairs(of_case: Callable[[Case], Array] = cof_and_draws) -> Iterator
     to are computed with one: a fit makes no error smaller.
     """
     for contrast in tread_contrasts():
-        stands = (_unfitted(stand, contrast.source) for stand in (contrast.over, contrast.under))
-        over, under = (_drawn(stand, of_case) for stand in stands)
-        ends = _published(contrast, under[0])
+        stands = (_without_fit(stand, contrast.source) for stand in (contrast.over, contrast.under))
+        over, under = (_draw_cof(stand, of_case) for stand in stands)
+        ends = _published_bounds(contrast, under[0])
         second = _place(contrast.under.cases[0])
         names, case = (contrast.source, contrast.effect), contrast.over.cases[0]
         yield _pair(*names, case, ends, over / under, second, contrast.extremes_of)
@@ -74,14 +74,14 @@ def computed_pairs(of_case: Callable[[Case], Array] = cof_and_draws) -> Iterator
                 with np.errstate(divide="ignore"):
                     ends = tuple(np.log((reading.low, reading.high)))
                 try:
-                    drawn = _drawn(_unfitted(stand, source.name), of_case)
+                    drawn = _draw_cof(_without_fit(stand, source.name), of_case)
                 except DataError as error:  # a march without an answer
                     print(f"left out: {source.name} {condition.id}: {error}", file=sys.stderr)
                     continue
                 yield _pair(*names, stand.cases[0], ends, drawn, np.zeros(6))
 
 
-def _unfitted(stand: Stand, source: str) -> Stand:
+def _without_fit(stand: Stand, source: str) -> Stand:
     if source not in FITTED:
         return stand
     return replace(stand, cases=tuple(case.replace("film.dewetting", 0.0) for case in stand.cases))
@@ -105,7 +105,7 @@ def _pair(
     return TreadPair(source, effect, fluid, low, high, ratio, sd, first, second, extremes_of)
 
 
-def _drawn(stand: Stand, of_case: Callable[[Case], Array]) -> Array:
+def _draw_cof(stand: Stand, of_case: Callable[[Case], Array]) -> Array:
     """Return COF of what stands for a condition, and its draws (1 + draws,)."""
     rows = []
     for case in stand.cases:
@@ -119,7 +119,7 @@ def _place(case: Case) -> Array:
     return place_of_tread(case, sole_map(case, case.numerics.quick_grid_spacing))
 
 
-def _published(contrast: Contrast, cof: float) -> tuple[float, float]:
+def _published_bounds(contrast: Contrast, cof: float) -> tuple[float, float]:
     """Return the bounds of the published ln ratio; a slope is over the computed COF."""
     ends = np.array([contrast.low, contrast.high])
     if np.isnan(contrast.low):

@@ -144,6 +144,6 @@ def mean_line(heights: np.ndarray, spacing: float, cutoff: float, ends: str) -> 
     # Convolution turns the kernel round: odd weights change their sign.
     kernels = (w, -w * u, w * u * u)
     ones = np.ones(n).reshape(column)
-    m0, m1, m2 = (fftconvolve(ones, each, axes=0)[m : m + n] for each in kernels)
-    b0, b1 = (oaconvolve(heights, each, axes=0)[m : m + n] for each in kernels[:2])
+    m0, m1, m2 = (fftconvolve(ones, kernel, axes=0)[m : m + n] for kernel in kernels)
+    b0, b1 = (oaconvolve(heights, kernel, axes=0)[m : m + n] for kernel in kernels[:2])
     return (m2 * b0 - m1 * b1) / (m0 * m2 - m1 * m1)

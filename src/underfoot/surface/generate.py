@@ -32,7 +32,7 @@ def sinusoidal(
     line = amplitude * np.cos(2.0 * np.pi * spacing * np.arange(nx) / wavelength)
     size = f"amplitude {metres(amplitude)} and wavelength {metres(wavelength)}"
     note = f"generated wave of {size} along x"
-    return _generated(np.repeat(line[:, None], ny, axis=1), spacing, wavelength, note)
+    return _generated_map(np.repeat(line[:, None], ny, axis=1), spacing, wavelength, note)
 
 
 def checkerboard(
@@ -80,10 +80,10 @@ def checkerboard(
         f"wavelength {metres(wavelength)}"
     )
     heights = 0.5 * peak_to_valley * np.outer(wave(nx), wave(ny))
-    return _generated(heights, spacing, wavelength if form == "cosine" else None, note)
+    return _generated_map(heights, spacing, wavelength if form == "cosine" else None, note)
 
 
-def _generated(
+def _generated_map(
     heights: np.ndarray, spacing: float, resolution: float | None, *done: str
 ) -> HeightMap:
     return HeightMap(heights, spacing, True, resolution, source="generated", processing=done)
@@ -211,7 +211,7 @@ def self_affine(
         f"generated self-affine, Hurst {hurst:g}, wavelengths {metres(short_cutoff)} to "
         f"{metres(long_cutoff)}, roll-off {metres(turn)}, anisotropy {anisotropy:g}, seed {seed}"
     )
-    return _generated(heights, spacing, short_cutoff, note)
+    return _generated_map(heights, spacing, short_cutoff, note)
 
 
 def random_phases(amplitude: np.ndarray, shape: tuple[int, int], seed: int) -> np.ndarray:
@@ -276,7 +276,7 @@ def surface_from_spectrum(
         f"{100.0 * float(np.mean(heights**2)) / total:.3g} % of its mean square height, "
         f"periodic, nothing extrapolated, seed {seed}"
     )
-    return _generated(heights, spacing, shortest, *spectrum.notes, note)
+    return _generated_map(heights, spacing, shortest, *spectrum.notes, note)
 
 
 def surface_of_density(
@@ -320,4 +320,4 @@ def surface_of_density(
     power *= math.prod(steps) / CELL_PARTS**2
     heights = random_phases(np.sqrt(power) * (nx * ny), (nx, ny), seed)
     note = f"generated from a spectrum, waves {metres(waves[1])} to {metres(waves[0])}, seed {seed}"
-    return _generated(heights, spacing, waves[1], note)
+    return _generated_map(heights, spacing, waves[1], note)

@@ -154,7 +154,7 @@ class Profile(Heights):
                 where="section",
                 allowed=Message("within 0 m to {metres}, two points or more", metres=metres(x[-1])),
             )
-        done = f"cut to {metres(start)} to {metres(end)}"
+        done = Message("cut to {low} to {high}", low=metres(start), high=metres(end))
         return self.changed(self.heights[inside], done, periodic=False)
 
 

@@ -149,7 +149,7 @@ def read_instrument(
     return _by_library(path, length_unit, resample, fill_missing)
 
 
-def _measured(
+def _measured_surface(
     heights: np.ndarray, sides: list[float], how: str, fill_missing: bool, path: Path, **known: Any
 ) -> Profile | HeightMap:
     """Return heights (m), (nx,) or (nx, ny), at distances ``sides`` (m) as a profile or a map."""
@@ -222,19 +222,19 @@ def _gsf(
     sides = [factors[0] * size[0] / columns, factors[0] * size[1] / rows]
     if rows == 1:
         heights, sides = heights[:, 0], sides[:1]
-    return _measured(heights, sides, "read as GSF", fill_missing, path)
+    return _measured_surface(heights, sides, "read as GSF", fill_missing, path)
 
 
 def _sdf(path: Path, fill_missing: bool) -> Profile | HeightMap:
     import sdfio
 
-    found = _trusted(lambda: sdfio.read(path), "SDF", path)
+    found = _read_by_library(lambda: sdfio.read(path), "SDF", path)
     sides = [float(found.header.x_scale), float(found.header.y_scale)]
     heights = np.asarray(found.data, dtype=float).T
     if heights.shape[1] == 1:
         heights, sides = heights[:, 0], sides[:1]
-    how = f"read as SDF ({found.header.revision.value})"
-    return _measured(heights, sides, how, fill_missing, path)
+    how = Message("read as SDF ({value})", value=found.header.revision.value)
+    return _measured_surface(heights, sides, how, fill_missing, path)
 
 
 def _x3p(path: Path, resample: bool, fill_missing: bool) -> Profile | HeightMap | None:
@@ -264,7 +264,7 @@ def _x3p(path: Path, resample: bool, fill_missing: bool) -> Profile | HeightMap 
     except x3pio.X3pChecksumError:
         # The archive's own checksums hold, so it is as it was written: some programs write the
         # sum of another part.
-        found = _trusted(lambda: x3pio.read(path, verify=False), "X3P", path)
+        found = _read_by_library(lambda: x3pio.read(path, verify=False), "X3P", path)
         how.append("its own checksum is not that of its content")
     except Exception as error:
         raise _unread("X3P", path) from error
@@ -289,7 +289,7 @@ def _x3p(path: Path, resample: bool, fill_missing: bool) -> Profile | HeightMap 
     sides, heights = list(layer.spacing), heights.T
     if heights.shape[1] == 1:
         sides, heights = sides[:1], heights[:, 0]
-    return _measured(heights, sides, "; ".join(how), fill_missing, path)
+    return _measured_surface(heights, sides, "; ".join(how), fill_missing, path)
 
 
 def _x3p_profile(
@@ -297,14 +297,14 @@ def _x3p_profile(
 ) -> Profile | HeightMap:
     if layer.is_regular_grid:
         spacing = layer.spacing[0] if isinstance(layer.spacing, tuple) else layer.spacing
-        return _measured(heights, [float(spacing)], how, fill_missing, path)
+        return _measured_surface(heights, [float(spacing)], how, fill_missing, path)
     points = np.asarray(layer.points(), dtype=float).reshape(-1, 3)
     whole, notes = complete(points[:, 2], fill_missing, str(path))
     profile = profile_from_positions(points[:, 0], whole, resample=resample, source=str(path))
     return profile.changed(profile.heights, "; ".join((how, *notes)))
 
 
-def _trusted(read: Callable[[], Any], name: str, path: Path) -> Any:
+def _read_by_library(read: Callable[[], Any], name: str, path: Path) -> Any:
     """Return what a library reads; its errors, which may hold parts of the file, stay its own."""
     try:
         return read()
@@ -354,4 +354,4 @@ def _by_library(
     sizes = zip(topography.physical_sizes, heights.shape, strict=True)
     sides = [float(size) * factor / n for size, n in sizes]
     periodic = bool(topography.is_periodic)
-    return _measured(heights * factor, sides, how, fill_missing, path, periodic=periodic)
+    return _measured_surface(heights * factor, sides, how, fill_missing, path, periodic=periodic)

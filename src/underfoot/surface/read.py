@@ -138,7 +138,10 @@ def read_numbers(path: Path | str) -> TextNumbers:
     said = {
         "decimal commas read as decimal points": any(form.decimal == "," for form in forms),
         "signs between thousands left out": any(form.thousands for form in forms),
-        f"lines of words below the numbers left out: {count - len(rows)}": len(rows) < count,
+        Message("lines of words below the numbers left out: {count}", count=count - len(rows)): len(
+            rows
+        )
+        < count,
         "the first column counts the rows: left out": numbered,
     }
     notes = tuple(note for note, holds in said.items() if holds)

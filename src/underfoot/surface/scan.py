@@ -282,7 +282,7 @@ def read_scan(
         lines, level, cutoff, max(SHORT_CUTOFF, resolved.wavelength), lay, surface
     )
     if areal is not None:
-        source = f"ISO 25178-2 (Sq), cut-off {display(cutoff, 'm')}"
+        source = Message("ISO 25178-2 (Sq), cut-off {cutoff}", cutoff=display(cutoff, "m"))
         values["rq"] = replace(values["rq"], value=areal, source=source)
     if sections < SECTIONS:
         taken = {"count": sections, "length": Amount(cutoff, "m")}
@@ -290,7 +290,7 @@ def read_scan(
     if resolved.wavelength > SHORT_CUTOFF:
         unseen = {"wave": Amount(resolved.wavelength, "m"), "reason": resolved.reason}
         notes.append(Message("waves below {wave} not seen: {reason}", **unseen))
-    doubts = tuple(filter(None, [short, uneven, _held(surface)]))
+    doubts = tuple(filter(None, [short, uneven, _equal_heights_question(surface)]))
     if doubts:
         said = "; ".join(doubts)
         values = {
@@ -465,7 +465,7 @@ def _uneven(sections: np.ndarray) -> Message:
     )  # fmt: skip
 
 
-def _held(surface: Profile | HeightMap) -> Message:
+def _equal_heights_question(surface: Profile | HeightMap) -> Message:
     """Return what many equal heights ask; nothing where no number stands out."""
     share, height = held_level(surface.heights)
     if not share:

@@ -115,7 +115,7 @@ class IsotropicSpectrum(_Spectrum):
             density=self.density[inside],
             area=self.area[inside],
             reliable=(max(low, self.reliable[0]), min(high, self.reliable[1])),
-            notes=(*self.notes, f"cut to {low:g} to {high:g} rad/m"),
+            notes=(*self.notes, Message("cut to {low:g} to {high:g} rad/m", low=low, high=high)),
         )
 
 
@@ -131,7 +131,9 @@ def profile_spectrum(
     Believed from two waves in the length (one for periodic surfaces) up to the wave number of
     ``shortest_reliable_wavelength``.
     """
-    lines, shape, notes = _windowed(_lines(surface.heights, axis), window, surface.periodic, (0,))
+    lines, shape, notes = _window_heights(
+        _lines(surface.heights, axis), window, surface.periodic, (0,)
+    )
     n, spacing = lines.shape[0], surface.spacings[axis]
     length = n * spacing
     power = np.mean(np.abs(np.fft.rfft(lines * shape, axis=0)) ** 2, axis=1)
@@ -156,7 +158,7 @@ def isotropic_spectrum(surface: HeightMap, *, window: str | None = None) -> Isot
 
 def level_spectrum(surface: HeightMap, *, window: str | None = None) -> IsotropicSpectrum:
     """Return the ``isotropic_spectrum`` of a map whose plane was removed, or of a periodic one."""
-    z, shape, notes = _windowed(surface.heights, window, surface.periodic, (0, 1))
+    z, shape, notes = _window_heights(surface.heights, window, surface.periodic, (0, 1))
     nx, ny = z.shape
     lx, ly = surface.size
     transform = np.abs(np.fft.fft2(z * shape)) ** 2
@@ -186,7 +188,7 @@ def _lines(heights: np.ndarray, axis: int) -> np.ndarray:
     return heights[:, None] if heights.ndim == 1 else np.moveaxis(heights, axis, 0)
 
 
-def _windowed(
+def _window_heights(
     heights: np.ndarray, window: str | None, periodic: bool, axes: tuple[int, ...]
 ) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
     check_heights(heights)

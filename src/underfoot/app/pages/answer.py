@@ -230,7 +230,9 @@ class _Answer:
     def _beside(self, answer: dict[str, Any]) -> None:
         """Show the COF on a scale with what walkers need and a shoe that the person knows."""
         project = self.session.project
-        computed = [each.name for each in project.results() if each.cof and each.name != self.name]
+        computed = [
+            result.name for result in project.results() if result.cof and result.name != self.name
+        ]
         known = project.known if project.known in computed else None
         marks = [("here", self.text("answer.here"), answer["cof"])]
         if (needed := self.case.value("risk.rcof_mean")) is not None:

@@ -20,10 +20,10 @@ EFFECTS = "underfoot.app.work:effects"
 
 def build(session: Session, name: str) -> None:
     """Show the assumptions, those with the largest known effect first."""
-    show_refillable(partial(_filled, session, name))
+    show_refillable(partial(_fill_dialog, session, name))
 
 
-def _filled(session: Session, name: str, again: Any) -> None:
+def _fill_dialog(session: Session, name: str, again: Any) -> None:
     text, case = session.text, session.project.case(name)
     ui.label(text("assumptions.lead")).classes("soft")
     task = session.jobs.latest(name, EFFECTS)

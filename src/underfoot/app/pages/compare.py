@@ -33,7 +33,7 @@ def build(session: Session) -> None:
 class _Compare:
     def __init__(self, session: Session) -> None:
         self.session, self.text = session, session.text
-        names = [each.name for each in session.project.results()]
+        names = [result.name for result in session.project.results()]
         asked = [name for name in session.query.get("variants", "").split("|") if name in names]
         title(self.text("compare.title")).classes("hidden-title")
         ui.label(self.text("compare.lead", most=MOST)).classes("lead")

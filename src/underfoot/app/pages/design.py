@@ -247,7 +247,7 @@ class _Design:
         names: Sequence[str] = catalogue.names(kind)
         if kind == "setup":
             entries = (catalogue.entry(kind, name) for name in names)
-            names = [each.name for each in entries if any("motion." in p for p in each.values)]
+            names = [entry.name for entry in entries if any("motion." in p for p in entry.values)]
         return {name: catalogue.entry(kind, name).title for name in names}
 
 

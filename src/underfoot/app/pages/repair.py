@@ -86,7 +86,7 @@ def open_variant(session: Session, route: str, name: str) -> Case | None:
 def _card(session: Session, name: str, error: UnderfootError, mended: Callable[[], None]) -> None:
     """Show why a variant can't be read and, for each file it lacks, what would take its place."""
     text, project = session.text, session.project
-    lacking = [each for each in references(project, name) if not each.holds(project)]
+    lacking = [reference for reference in references(project, name) if not reference.holds(project)]
     with ui.element("div").classes("answer-card repair").props('role="alert"'):
         ui.label(text("repair.title")).classes("strong")
         for each in lacking:

@@ -94,7 +94,7 @@ class _Inspection:
         self._read()
 
     def _choice(self, key: str, options: tuple[str, ...]) -> None:
-        labels = {each: self.text.get(f"sole_file.{each}", each) for each in options}
+        labels = {option: self.text.get(f"sole_file.{option}", option) for option in options}
         choice = ui.select(labels, value=options[0], label=self.text(f"sole_file.{key}"))
         choice.props("dense outlined options-dense")
         choice.on_value_change(lambda event: self._set(key, event.value))
@@ -165,7 +165,7 @@ class _Inspection:
             name
             for name in project.variants()
             if name != self.name
-            and any(each.path(project) in same for each in references(project, name))
+            and any(reference.path(project) in same for reference in references(project, name))
         ]
 
         def use() -> None:

@@ -199,7 +199,9 @@ class _Study:
         ui.label(self.text(f"studies.{key}_hint")).classes("soft")
 
     def _base(self, base: str) -> None:
-        known = {f"../variants/{each}.toml": each for each in self.session.project.variants()}
+        known = {
+            f"../variants/{variant}.toml": variant for variant in self.session.project.variants()
+        }
         choice = ui.select({**({base: base} if base else {}), **known}, value=base or None)
         choice.props("dense outlined options-dense").props(f'label="{self.text("studies.base")}"')
 
@@ -224,7 +226,7 @@ class _Study:
         value, label = given.get(key, ""), self.text(f"studies.{key}")
         field: Any
         if options:
-            words = {each: self.text(f"studies.{key}_{each or 'usual'}") for each in options}
+            words = {option: self.text(f"studies.{key}_{option or 'usual'}") for option in options}
             field = ui.select(words, value=value if value in options else options[0], label=label)
             field.props("options-dense")
         else:

@@ -21,10 +21,10 @@ WORN = "underfoot.app.work:worn"
 
 def build(session: Session, name: str) -> None:
     """Show what was computed of the wear of a variant, and two fields that begin it."""
-    show_refillable(partial(_filled, session, name))
+    show_refillable(partial(_fill_dialog, session, name))
 
 
-def _filled(session: Session, name: str, again: Any) -> None:
+def _fill_dialog(session: Session, name: str, again: Any) -> None:
     text, project = session.text, session.project
     folder = project.inside("studies", f"{name}, wear")
     task = session.jobs.latest(name, WORN)
@@ -55,7 +55,7 @@ def _filled(session: Session, name: str, again: Any) -> None:
             task_line(session, task, again)
         elif task is not None and task.problem:
             ui.label(task.problem).classes("problem problem-what").props('role="alert"')
-        elif (shown := _stored(session, name)) is not None:
+        elif (shown := _read_stored_wear(session, name)) is not None:
             sentences(shown["headline"])
             sentences(shown["cautions"], "caution")
             for each in shown["tables"]:
@@ -69,7 +69,7 @@ def _above_0(session: Session, typed: str, *, unit: str, usual: str) -> float:
     return value
 
 
-def _stored(session: Session, name: str) -> dict[str, Any] | None:
+def _read_stored_wear(session: Session, name: str) -> dict[str, Any] | None:
     """Return what was computed of the present case; None where there is nothing."""
     file = session.project.inside("studies", f"{name}, wear", "shown.json")
     try:

@@ -32,7 +32,7 @@ def contact_at_height(
     positive definite C. ``active`` (n,) bool is the first guess. Source: Judice and Pires (1994)
     Computers Oper. Res. 21:587.
     """
-    return _pivoted(compliance, clearance, active, height=height)
+    return _pivot(compliance, clearance, active, height=height)
 
 
 def contact_under_load(
@@ -47,11 +47,11 @@ def contact_under_load(
         active = np.zeros(clearance.size, dtype=bool)
         active[np.argmin(clearance)] = True
 
-    solution = _pivoted(compliance, clearance, active, load=load)
+    solution = _pivot(compliance, clearance, active, load=load)
     return solution if solution.wrong == 0 else _by_secant(compliance, clearance, load, solution)
 
 
-def _solved(
+def _solve_contact(
     compliance: np.ndarray,
     clearance: np.ndarray,
     contact: np.ndarray,
@@ -77,7 +77,7 @@ def _solved(
     return force, gap, height
 
 
-def _pivoted(
+def _pivot(
     compliance: np.ndarray,
     clearance: np.ndarray,
     active: np.ndarray,
@@ -89,7 +89,7 @@ def _pivoted(
     limit = 20 * contact.size + 100 if load is None else 60
     steps = 0
     while True:
-        force, gap, height = _solved(compliance, clearance, contact, height, load)
+        force, gap, height = _solve_contact(compliance, clearance, contact, height, load)
         steps += 1
         small_force = 1e-13 * float(np.abs(force).max(initial=0.0))
         small_gap = 1e-13 * float(np.abs(gap).max(initial=0.0))

@@ -43,13 +43,13 @@ def phases(terms: str, viscous: bool) -> list[list[Statement]]:
         keep += [(f"W[{60 + n}]", "s00 - s00") for n in range(6)]
         again = [*_constants(), *((name, row) for row, name in kept)]
         again += [(f"q{i}{j}", f"W[{60 + n}]") for n, (i, j) in enumerate(SYMMETRIC)]
-        again += [("v", "E[33]"), *_deformation(), *_relaxed()]
+        again += [("v", "E[33]"), *_deformation(), *_relaxed_pressure()]
         return [[*strain, *keep], [*again, *_nodal()]]
     if terms == "one":
         for n, (i, j) in enumerate(SYMMETRIC):
             row = f"Q[{n + (VISCOUS_ROWS if viscous else 0)}]"
             strain += [(f"q{i}{j}", f"decay * {row} + weight * s{i}{j}"), (row, f"q{i}{j}")]
-        strain += _relaxed()
+        strain += _relaxed_pressure()
     return [[*strain, *_nodal()]]
 
 
@@ -181,7 +181,7 @@ def _hourglass(terms: str, viscous: bool) -> list[Statement]:
     return rows
 
 
-def _relaxed() -> list[Statement]:
+def _relaxed_pressure() -> list[Statement]:
     """P less F times the sum of the histories."""
     rows: list[Statement] = []
     for i, j in product(range(3), range(3)):

@@ -39,7 +39,7 @@ def element_loops() -> ModuleType:
     name = f"underfoot_element_loops_{content_hash(text, kernels)[:16]}"
     for folder in (HERE / "__pycache__", default_folder() / "kernels"):
         path = folder / f"{name}.generated"  # not .py: no part of the source
-        if _written(path, text):
+        if _write_if_new(path, text):
             loader = SourceFileLoader(name, str(path))
             spec = spec_from_loader(name, loader)
             assert spec is not None
@@ -60,7 +60,7 @@ def element_loops() -> ModuleType:
     return module
 
 
-def _written(path: Path, text: str) -> bool:
+def _write_if_new(path: Path, text: str) -> bool:
     """Return whether ``path`` holds ``text``, written now if need be; whole at every moment."""
     try:
         if path.is_file() and path.read_text("utf-8") == text:

@@ -135,7 +135,7 @@ def _kinetic(v, f, inverse, mass, keep, gain):
 
 
 @njit(cache=True, error_model="numpy", fastmath=True)
-def _damped(v, f, inverse, mass, keep, gain):
+def _damping_work(v, f, inverse, mass, keep, gain):
     total = 0.0
     for n in range(v.size):
         mean = 0.5 * ((1.0 + keep) * v[n] - gain * f[n] * inverse[n])
@@ -170,7 +170,7 @@ def move(nodes, mesh, state, control, sample):
         if sample:
             state[at.KINETIC] += _kinetic(va, fa, inverse, mass, keep, gain)
         if alpha > 0.0:
-            state[at.DAMPING_LOSS] += alpha * dt * _damped(va, fa, inverse, mass, keep, gain)
+            state[at.DAMPING_LOSS] += alpha * dt * _damping_work(va, fa, inverse, mass, keep, gain)
         _move_free(ua, va, fa, inverse, dt, keep, gain)
 
     before = state[at.TOP_SPEED]

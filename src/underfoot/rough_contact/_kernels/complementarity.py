@@ -137,7 +137,7 @@ class _Batch:
         course = self.courses[n]
         course.products += 1
         p = members(self.pressure, [n])
-        return _clipped(self.operators.of([n]), p, height, course.load, double)
+        return _clip_pressure(self.operators.of([n]), p, height, course.load, double)
 
 
 def solved_contacts(
@@ -247,14 +247,14 @@ def _on_grid(
                 waiting.append(batch.of(exact))
             batch = rest
         if waiting:
-            batch = _joined(operators, waiting)
+            batch = _join_batches(operators, waiting)
             del waiting
             workspace.release()
             batch.pressure = xp.astype(batch.pressure, xp.float64)
     return [states[n] for n in range(len(courses))]
 
 
-def _joined(operators: Operators, batches: list[_Batch]) -> _Batch:
+def _join_batches(operators: Operators, batches: list[_Batch]) -> _Batch:
     """Return the members of several batches, without a gap, as one."""
     if len(batches) == 1:
         return batches[0]
@@ -281,7 +281,7 @@ def _step(
     xp, began = operators.xp, operators.count
     part = Restriction(batch.contact, xp)
     if part.points in part.nodes:
-        return _closed(batch, height, search, [n == part.points for n in part.nodes], states)
+        return _close_members(batch, height, search, [n == part.points for n in part.nodes], states)
     if 0 in part.nodes:
         empty = operators.asarray(np.array([[[n == 0]] for n in part.nodes]))
         batch.contact = xp.where(empty, height == xp.max(height), batch.contact)
@@ -348,7 +348,7 @@ def _step(
     return ends
 
 
-def _closed(
+def _close_members(
     batch: _Batch,
     height: AnyArray,
     search: Search,
@@ -385,7 +385,7 @@ def _closed(
     return ends
 
 
-def _clipped(
+def _clip_pressure(
     operators: Operators, p: AnyArray, height: AnyArray, load: float, double: bool
 ) -> tuple[AnyArray, AnyArray, float]:
     """Return (pressure, gap, error) with the negative pressures of ``p`` taken out."""

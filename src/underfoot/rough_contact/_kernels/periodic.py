@@ -28,7 +28,7 @@ def slope_numbers(
 ) -> tuple[float, float]:
     """Return (rms slope, share of its square in waves beyond the wavenumber ``limit``)."""
     xp = namespace(spectrum)
-    power = _squared(spectrum) * q_squared
+    power = _squared_modulus(spectrum) * q_squared
     total = half_sum(power, shape[1])
     short = half_sum(xp.where(q_squared > limit**2, power, xp.zeros_like(power)), shape[1])
     return total**0.5 / (shape[0] * shape[1]), short / total if total > 0.0 else 0.0
@@ -51,13 +51,13 @@ def dissipation(
 
     u = unit p / moduli; the work of a wave is qx unit |p|^2 E''/|E*|^2. ``unit`` is in m/1.
     """
-    loss = namespace(moduli).imag(moduli) / _squared(moduli) * qx
-    terms = _squared(pressure) * unit
+    loss = namespace(moduli).imag(moduli) / _squared_modulus(moduli) * qx
+    terms = _squared_modulus(pressure) * unit
     terms *= loss
     return half_sum(terms, shape[1]) / (shape[0] * shape[1]) ** 2
 
 
-def _squared(values: AnyArray) -> AnyArray:
+def _squared_modulus(values: AnyArray) -> AnyArray:
     xp = namespace(values)
     return xp.real(values) ** 2 + xp.imag(values) ** 2
 

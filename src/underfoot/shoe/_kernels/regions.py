@@ -20,7 +20,7 @@ def pieces(mask: Mask, *, diagonal: bool = False) -> tuple[Labels, int]:
     return np.asarray(labelled[0], dtype=np.intp), int(labelled[1])
 
 
-def grown(mask: Mask, steps: int) -> Mask:
+def grow_mask(mask: Mask, steps: int) -> Mask:
     """Return the mask and its neighbours within ``steps`` cells along the axes."""
     from scipy import ndimage
 
@@ -43,7 +43,7 @@ def without_holes(mask: Mask) -> Mask:
 
 def rim(mask: Mask, steps: int = 1) -> Mask:
     """Return the cells of the mask within ``steps`` cells of the outside or the array's edge."""
-    return mask & grown(~np.pad(mask, 1), steps)[1:-1, 1:-1]
+    return mask & grow_mask(~np.pad(mask, 1), steps)[1:-1, 1:-1]
 
 
 def without_specks(mask: Mask, fewest: int) -> Mask:

@@ -30,7 +30,7 @@ def rolled_base(height: Array, spacing: float, radius: float, slopes: tuple[floa
     eroded = _lower_envelopes(
         lines(np.where(np.isfinite(height), height, np.inf).T), x, places, bend
     )
-    opened = _opened(lines(eroded.T), y, bend, slopes[1])
+    opened = _open_lines(lines(eroded.T), y, bend, slopes[1])
     base = -_lower_envelopes(lines(-opened.T), places, x, bend).T
     return np.where(np.isfinite(height), base, np.nan)
 
@@ -75,7 +75,7 @@ def _lower_envelopes(lines: Array, places: Array, at: Array, curvature: float) -
 
 
 @njit(cache=True, error_model="numpy")
-def _opened(lines: Array, at: Array, curvature: float, slope: float) -> Array:
+def _open_lines(lines: Array, at: Array, curvature: float, slope: float) -> Array:
     """Return what parabolas under each line of heights reach at ``at``; inf heights: free.
 
     With curvature at^2 added a parabola is straight, and what it reaches is the lower convex hull,

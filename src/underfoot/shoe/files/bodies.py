@@ -109,13 +109,13 @@ def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
         _refuse_unknown(mesh.bodies, settings, where)
         return Found((mesh,), away, tuple(remarks))
     group = np.arange(len(mesh.bodies)) if settings.solid is not None else group_bodies(mesh)
-    keep, told = _named(_measured(mesh), group, settings, where)
+    keep, told = _find_outsole(_measure_bodies(mesh), group, settings, where)
     remarks += told
-    mesh, keep, told = _joined(mesh, group, keep)
+    mesh, keep, told = _join_groups(mesh, group, keep)
     remarks += told
     if mesh.body is None or np.ptp(mesh.body) == 0:
         return Found((mesh,), away, tuple(remarks))
-    bodies = _measured(mesh)
+    bodies = _measure_bodies(mesh)
     others = ~keep
     for without in (_without_islands, _without_supports, _without_plates):
         keep, told = without(bodies, keep)
@@ -136,7 +136,9 @@ def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
     return found
 
 
-def _joined(mesh: Mesh, group: NDArray[np.intp], keep: Mask) -> tuple[Mesh, Mask, list[Message]]:
+def _join_groups(
+    mesh: Mesh, group: NDArray[np.intp], keep: Mask
+) -> tuple[Mesh, Mask, list[Message]]:
     """Return the mesh with each group of bodies as one, which are kept, and what was joined."""
     assert mesh.body is not None
     first, number = np.unique(group, return_inverse=True)
@@ -153,7 +155,7 @@ def _joined(mesh: Mesh, group: NDArray[np.intp], keep: Mask) -> tuple[Mesh, Mask
                     "{count} bodies are one sole, lugs and what they hang on{names}; told by the "
                     "contact of their faces.",
                     count=len(members),
-                    names=Message(": {names}", names=_listed(named)) if named else "",
+                    names=Message(": {names}", names=_list_names(named)) if named else "",
                 )
             )
     together = np.bincount(number, keep) > 0
@@ -213,7 +215,7 @@ def _without_islands(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[Message]]:
     ]
 
 
-def _measured(mesh: Mesh) -> _Bodies:
+def _measure_bodies(mesh: Mesh) -> _Bodies:
     """Return extents and areas; unnamed bodies are named by their rank in area."""
     assert mesh.body is not None
     axes = box_axes(mesh.triangles, FileSettings())
@@ -241,7 +243,7 @@ def _other(name: str) -> bool:
 
 def _no_outsole(names: list[str], where: str) -> DataError:
     return DataError(
-        Message("by its name no body of the file is an outsole: {names}", names=_listed(names)),
+        Message("by its name no body of the file is an outsole: {names}", names=_list_names(names)),
         where=where,
         remedy=Message(
             'Export the outsole; or choose a body by its name, --solid "{name}"', name=names[0]
@@ -256,7 +258,7 @@ def _matching(names: tuple[str, ...], wanted: str) -> Mask:
     return exact if exact.any() else np.array([wanted in name for name in folded])
 
 
-def _named(
+def _find_outsole(
     bodies: _Bodies, group: NDArray[np.intp], settings: FileSettings, where: str
 ) -> tuple[Mask, list[Message]]:
     """Return the bodies that the user or their names tell to be outsole; all if none are told.
@@ -273,31 +275,35 @@ def _named(
         if not keep.any():
             named = {name for name, is_there in zip(bodies.names, sized, strict=True) if is_there}
             raise unknown_name("body", settings.solid, named, where=where)
-        return keep, [_taken(bodies, keep, sized, Message("as chosen"))]
+        return keep, [_taken_remark(bodies, keep, sized, Message("as chosen"))]
     other = np.array([_other(name) for name in bodies.names])
     by_name = np.array([bool(OUTSOLE_NAMES.search(name)) for name in bodies.names]) & ~other
     by_name, other = with_group(by_name), ~with_group(~other)
     if (by_name & sized).any():
         if (sized & ~by_name).any():
-            return by_name & sized, [_taken(bodies, by_name & sized, sized, Message("by name"))]
+            return by_name & sized, [
+                _taken_remark(bodies, by_name & sized, sized, Message("by name"))
+            ]
         return sized, []
     if sized.any() and not (sized & ~other).any():
         raise _no_outsole([n for n, t in zip(bodies.names, sized, strict=True) if t], where)
     if (other & sized).any():
         return sized & ~other, [
-            _taken(bodies, sized & ~other, sized, Message("by the others' names"))
+            _taken_remark(bodies, sized & ~other, sized, Message("by the others' names"))
         ]
     return sized, []
 
 
-def _taken(bodies: _Bodies, keep: Mask, sized: Mask, how: Message) -> Message:
-    left = _listed([n for n, k, t in zip(bodies.names, keep, sized, strict=True) if t and not k])
-    taken = _listed([n for n, k in zip(bodies.names, keep, strict=True) if k])
+def _taken_remark(bodies: _Bodies, keep: Mask, sized: Mask, how: Message) -> Message:
+    left = _list_names(
+        [n for n, k, t in zip(bodies.names, keep, sized, strict=True) if t and not k]
+    )
+    taken = _list_names([n for n, k in zip(bodies.names, keep, strict=True) if k])
     rest = Message("; left out: {names}", names=left) if left else ""
     return Message("Outsole {how}: {names}{rest}.", how=how, names=taken, rest=rest)
 
 
-def _listed(names: list[str]) -> Message:
+def _list_names(names: list[str]) -> Message:
     quoted = [Message('"{name}"', name=name) for name in dict.fromkeys(names)]
     more = Message(" and {count} more", count=len(quoted) - 4) if len(quoted) > 4 else ""
     return Message("{names}{more}", names=quoted[:4], more=more)
@@ -347,7 +353,7 @@ def _without_plates(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[Message]]:
     if not plates.any():
         return keep, []
     rest = keep & ~plates
-    named = _listed([n for n, p in zip(bodies.names, plates, strict=True) if p])
+    named = _list_names([n for n, p in zip(bodies.names, plates, strict=True) if p])
     return rest, [
         assumption_line("{names} is a plate under or over the sole and was left out.", names=named)
     ]
@@ -432,7 +438,7 @@ def _without_stack(
             most=most,
             least=least,
         )
-    taken = _taken(bodies, group, keep, Message("of a stack of bodies"))
+    taken = _taken_remark(bodies, group, keep, Message("of a stack of bodies"))
     told = Remark("" if sure else ASSUMED, "{taken} It is {how}.", taken=taken, how=how)
     return group, down, [told]
 

@@ -129,7 +129,7 @@ def mesh_into(path: str, kind: str, unit: str, answer: str) -> None:
     """Write the triangles of a CAD file, or the error it raises, pickled to the file ``answer``."""
     outcome: Mesh | Exception
     try:
-        outcome = _meshed(Path(path), kind, unit)
+        outcome = _mesh_solid(Path(path), kind, unit)
     except (InputError, DataError) as error:
         outcome = error.with_traceback(None)
         outcome.__cause__ = outcome.__context__ = None
@@ -185,7 +185,7 @@ def _si_length(line: bytes) -> float | None:
     return _PREFIXES.get(stated[1]) if stated else None
 
 
-def _meshed(path: Path, kind: str, unit: str) -> Mesh:
+def _mesh_solid(path: Path, kind: str, unit: str) -> Mesh:
     occ = optional_module("netgen.occ", "cad", f"Reading {kind}")
     meshing = optional_module("netgen.meshing", "cad", f"Reading {kind}")
     with _quiet(meshing.SetMessageImportance):

@@ -6,7 +6,7 @@ from underfoot.core.arrays import Array, Mask
 from underfoot.core.remark import Message
 
 from .._kernels.covering_discs import local_width
-from .._kernels.regions import carried_on, distance_to, grown, pieces, rim, without_holes
+from .._kernels.regions import carried_on, distance_to, grow_mask, pieces, rim, without_holes
 
 LARGEST_HOLE = 1e-4
 """A hole of more area is an opening of the sole, not a gap of the scan, m^2."""
@@ -162,7 +162,7 @@ def without_ledges(
         box = boxes[number - 1]
         around = tuple(slice(max(s.start - reach, 0), s.stop + reach) for s in box)
         piece = numbers[around] == number
-        beside = grown(piece, reach) & inside[around] & ~piece
+        beside = grow_mask(piece, reach) & inside[around] & ~piece
         if not beside.any():
             continue
         heights = height[around]

@@ -34,7 +34,7 @@ def lug_lines(
     one, other, known = _beside(lines, surface, channel)
     lines = lines[known & (one | other)]
     ways: list[Array] = []
-    for line in shapely.get_parts(_merged(lines)):
+    for line in shapely.get_parts(_merge_lines(lines)):
         way = shapely.get_coordinates(line)
         if not line.is_closed and line.length > 4 * surface.spacing:
             # the last of it may be a piece of the turn along the rim
@@ -65,7 +65,7 @@ def rim_lines(
     sections = section_lines(triangles, axes, begin, surface, levels)
     rings: list[Any] = []
     for lines in sections:
-        for ring in shapely.get_parts(_merged(lines)):
+        for ring in shapely.get_parts(_merge_lines(lines)):
             if ring.is_closed and len(ring.coords) > 3:
                 rings.append(shapely.make_valid(shapely.polygons(ring.coords)))
     plan: Any = shapely.union_all(rings)
@@ -113,10 +113,10 @@ def section_lines(
             share = low / np.where(crossed, low - high, 1.0)
             points = here + share[..., None] * (ahead - here)
             found_lines.append(points[crossed][:, :2].reshape(-1, 2, 2))
-    return [np.concatenate(each) for each in lines]
+    return [np.concatenate(line) for line in lines]
 
 
-def _merged(lines: Array) -> Any:
+def _merge_lines(lines: Array) -> Any:
     """Return lines (n, 2, 2; m) joined where their ends meet."""
     import shapely
 

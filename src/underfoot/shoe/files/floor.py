@@ -11,7 +11,7 @@ from underfoot.core.arrays import Array, Mask
 from underfoot.core.remark import Message, assumption_line
 
 from .._kernels.components import MOST_FACES, components
-from .._kernels.regions import grown, shrunk, without_specks
+from .._kernels.regions import grow_mask, shrunk, without_specks
 from .carriers import span_mask
 from .mesh import Mesh
 from .orientation import box_axes, level_axes
@@ -59,7 +59,7 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
         hull = span_mask(rest)
         plan = rest if solid else hull
         beyond = np.pad(flat & ~plan, 2, mode="edge")
-        beyond = grown(shrunk(beyond, 1), 1)[2:-2, 2:-2] & ~plan
+        beyond = grow_mask(shrunk(beyond, 1), 1)[2:-2, 2:-2] & ~plan
         land = np.count_nonzero(flat & hull) > _LAND * np.count_nonzero(hull)
         share = np.count_nonzero(beyond) / np.count_nonzero(hull)
         if share > _BEYOND[solid] and (found is None or share > found[0]):
@@ -88,7 +88,7 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
     elif np.count_nonzero(level_with) > _LEVEL_WITH * level_with.size:
         cut = beside & in_plane  # land or top of the body lie in the plane
     else:
-        cut = in_plane | _within(mesh.triangles.mean(axis=1), seen, ~grown(rest, 1))
+        cut = in_plane | _within(mesh.triangles.mean(axis=1), seen, ~grow_mask(rest, 1))
     lost, down = "", None
     apart = _whole_pieces(mesh, in_plane, seen, ~rest)
     if apart.any():
@@ -134,7 +134,7 @@ def _whole_pieces(mesh: Mesh, in_plane: Mask, seen: View, beside: Mask) -> Mask:
     return (alone & (np.bincount(number, reaching, minlength=count) > 0))[number]
 
 
-def _sampled(triangles: NDArray[np.float32], axes: Array) -> tuple[Array, Array, Array]:
+def _sample_triangles(triangles: NDArray[np.float32], axes: Array) -> tuple[Array, Array, Array]:
     """Return corners, normals (as long as twice the area) and their lengths in the frame."""
     chosen = triangles[:: math.ceil(triangles.shape[0] / _SAMPLE) or 1]
     corners = chosen.astype(np.float64) @ axes.T
@@ -146,7 +146,7 @@ def _sampled(triangles: NDArray[np.float32], axes: Array) -> tuple[Array, Array,
 def _level_axes(triangles: NDArray[np.float32]) -> Array:
     """Return the frame of the file's box, turned so that most of what is nearly level is level."""
     axes = box_axes(triangles, FileSettings())
-    _, normal, area = _sampled(triangles, axes)
+    _, normal, area = _sample_triangles(triangles, axes)
     level = (np.abs(normal[:, 2]) > _FLAT * area) & (area > 0)
     if not level.any():
         return axes
@@ -159,7 +159,7 @@ def _level_axes(triangles: NDArray[np.float32]) -> Array:
 
 def _levels(triangles: NDArray[np.float32], axes: Array) -> list[tuple[float, float]]:
     """Return height and half thickness of the widest level planes, in the file's unit."""
-    corners, normal, area = _sampled(triangles, axes)
+    corners, normal, area = _sample_triangles(triangles, axes)
     level = (np.abs(normal[:, 2]) > _FLAT * area) & (area > 0)
     height = corners.mean(axis=1)[:, 2]
     low, high = float(np.nanmin(corners[..., 2])), float(np.nanmax(corners[..., 2]))

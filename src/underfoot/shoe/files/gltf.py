@@ -159,7 +159,7 @@ class _Asset:
         if "mesh" in node:
             if "skin" in node:
                 self._unmet("a skin that bends the mesh", required=True)
-            parts = [self._primitive(*each) for each in self._primitives(node)]
+            parts = [self._primitive(*primitive) for primitive in self._primitives(node)]
             for instance in self._instances(extensions.get(_INSTANCES)):
                 mesh = self.json["meshes"][node["mesh"]]
                 for vertices, faces in parts:
@@ -238,7 +238,7 @@ class _Asset:
                 )
             )
         if shape.get("normalized"):
-            vertices = _normalised(vertices)
+            vertices = _normalise(vertices)
         return vertices, faces.astype(np.int64).ravel()
 
     def _instances(self, accessor: dict[str, Any] | None) -> list[Array]:
@@ -270,7 +270,7 @@ class _Asset:
                 sparse["count"],
             )  # fmt: skip
             values[places.ravel()] = self._rows(sparse["values"], kind, width, sparse["count"])
-        return _normalised(values) if accessor.get("normalized") else values
+        return _normalise(values) if accessor.get("normalized") else values
 
     def _rows(self, accessor: dict[str, Any], kind: np.dtype, width: int, count: int) -> np.ndarray:
         data, stride = self._view(accessor["bufferView"])
@@ -346,7 +346,7 @@ def strip_faces(order: np.ndarray) -> np.ndarray:
     return faces[(a != b) & (b != c) & (c != a)]
 
 
-def _normalised(values: np.ndarray) -> Array:
+def _normalise(values: np.ndarray) -> Array:
     if values.dtype.kind == "f":
         return values
     return np.maximum(values / float(np.iinfo(values.dtype).max), -1.0)

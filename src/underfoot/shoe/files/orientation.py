@@ -85,11 +85,11 @@ def box_axes(
         weighted = weights[:, None, None] * points
         moments = weighted.reshape(-1, 3).T @ points.reshape(-1, 3)
         _, vectors = np.linalg.eigh(moments)
-        thin = _snapped(np.asarray(vectors[:, 0], dtype=np.float64))
+        thin = _snap_to_axis(np.asarray(vectors[:, 0], dtype=np.float64))
         if settings.forward in DIRECTIONS:
             forward = unit_vector(settings.forward)
             thin = thin - (thin @ forward) * forward
-            thin = _snapped(thin / np.linalg.norm(thin))
+            thin = _snap_to_axis(thin / np.linalg.norm(thin))
     if settings.forward in DIRECTIONS:
         along = unit_vector(settings.forward)
         along = along - (along @ thin) * thin
@@ -110,7 +110,7 @@ def _sample(triangles: NDArray[np.float32]) -> tuple[Array, Array]:
     return chosen - centre, areas
 
 
-def _snapped(vector: Array) -> Array:
+def _snap_to_axis(vector: Array) -> Array:
     axis = int(np.argmax(np.abs(vector)))
     if abs(vector[axis]) < _SNAP:
         return vector

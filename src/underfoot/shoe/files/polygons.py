@@ -104,7 +104,9 @@ def _within(vertices: Array, rings: Ints, numbers: Ints, where: str) -> tuple[In
     extent = np.linalg.svd(places, compute_uv=False)
     sized = extent[:, 1] > _NO_WIDTH * extent[:, 0]  # a line has no inside
     places, rings, numbers = places[sized], rings[sized], numbers[sized]
-    flat = np.stack([_flattened(each) for each in places]) if len(places) else places[..., :2]
+    flat = (
+        np.stack([_flatten_polygon(place) for place in places]) if len(places) else places[..., :2]
+    )
     area = np.abs(_shoelace(flat))
     triangles, owner = [np.zeros((0, 3), dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
     indices = np.broadcast_to(np.arange(rings.shape[1], dtype=float), rings.shape)
@@ -139,7 +141,7 @@ def _within(vertices: Array, rings: Ints, numbers: Ints, where: str) -> tuple[In
     return np.concatenate(triangles), np.concatenate(owner)
 
 
-def _flattened(ring: Array) -> Array:
+def _flatten_polygon(ring: Array) -> Array:
     """Return a polygon (k, 3) in the plane of its area, or of its spread where it has no area."""
     normal = _normals(ring[None])[0]
     _, _, axes = np.linalg.svd(ring, full_matrices=False)

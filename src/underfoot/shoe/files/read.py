@@ -201,7 +201,7 @@ def _format_of(head: bytes, path: Path) -> str | None:
         if start.startswith(beginning):
             return name
     if start.startswith(b"PK\3\4"):
-        return _zipped(path)
+        return _zipped_format(path)
     for beginning, name in _FOREIGN.items():
         if head.startswith(beginning):
             raise DataError(
@@ -237,7 +237,7 @@ def _is_obj(head: bytes, path: Path) -> bool:
     return all(known) or (named and b"\0" not in head)
 
 
-def _zipped(path: Path) -> str:
+def _zipped_format(path: Path) -> str:
     try:
         with zipfile.ZipFile(path) as archive:
             names = archive.namelist()

@@ -165,7 +165,7 @@ class _Reader:
     def _meshes(self, geometry: Any, shown: bool) -> Iterator[tuple[Array, np.ndarray]]:
         """Yield vertices and triangles of an object; count its surfaces without a mesh."""
         soups = []
-        for mesh in _saved(self.rhino, geometry):
+        for mesh in _saved_meshes(self.rhino, geometry):
             if mesh is None:
                 self.bare += shown
                 continue
@@ -204,7 +204,7 @@ def _cut(corners: Array, quads: np.ndarray) -> np.ndarray:
     return np.concatenate([turned[:, [0, 1, 2]], turned[:, [0, 2, 3]]])
 
 
-def _saved(rhino: Any, geometry: Any) -> Iterator[Any]:
+def _saved_meshes(rhino: Any, geometry: Any) -> Iterator[Any]:
     """Yield the mesh of each surface of an object, None where none was saved."""
     if isinstance(geometry, rhino.Mesh):
         yield geometry

@@ -223,7 +223,7 @@ def read_off(path: Path) -> MeshFile:
         corners = [line[1 : 1 + n] for line, n in zip(polygons, counts, strict=True)]
         if any(len(each) != n for each, n in zip(corners, counts, strict=True)):
             raise ValueError("a face has fewer corners than it says")
-        flat = np.array([word for each in corners for word in each], dtype="S").astype(np.int64)
+        flat = np.array([word for corner in corners for word in corner], dtype="S").astype(np.int64)
     except (ValueError, IndexError, OverflowError) as error:
         raise DataError(
             Message("the OFF file is not read ({error})", error=error), where=where, remedy=AGAIN

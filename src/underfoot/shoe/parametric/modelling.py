@@ -62,12 +62,12 @@ def slit_outlines(
 def groove_outlines(shape: SoleShape, grooves: Sequence[Groove]) -> list[Outline]:
     """Return the rectangles of grooves; what goes right across ends beyond the sole."""
     outlines = []
-    for each in grooves:
-        cosine, sine = math.cos(each.angle), math.sin(each.angle)
-        half = min(each.length, 4 * (shape.length + shape.width)) / 2
-        corners = _rectangle(-each.width / 2, -half, each.width / 2, half)
+    for groove in grooves:
+        cosine, sine = math.cos(groove.angle), math.sin(groove.angle)
+        half = min(groove.length, 4 * (shape.length + shape.width)) / 2
+        corners = _rectangle(-groove.width / 2, -half, groove.width / 2, half)
         turned = corners @ np.array([[cosine, sine], [-sine, cosine]])
-        outlines.append(Outline(turned + each.place))
+        outlines.append(Outline(turned + groove.place))
     return outlines
 
 

@@ -68,7 +68,7 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
     body = slab(shape) * raise_face(rim_face(shape.rim_arcs(), -_BELOW), 0.3)
     if shape.edge_radius > 0:
         rim = [i for i, edge in enumerate(body.edges) if _on_lower_rim(edge, shape)]
-        body = _rounded(body, rim, shape.edge_radius, "the lower rim", remarks)
+        body = _round_edges(body, rim, shape.edge_radius, "the lower rim", remarks)
     lower = body
     tread, lugs = shape.tread, []
     if tread is not None and tread.depth > 0:
@@ -88,7 +88,7 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
             free = [i for i, edge in edges if _belongs(edge, whole)]
             if free:
                 flat = tread.edge_chamfer > 0
-                body = _rounded(body, free, edge, "the lugs' edges", remarks, chamfer=flat)
+                body = _round_edges(body, free, edge, "the lugs' edges", remarks, chamfer=flat)
             if len(free) < len(edges):
                 remarks.append(
                     f"{len(edges) - len(free)} of {len(edges)} edges of lugs stay sharp: "
@@ -118,7 +118,7 @@ def _on_sole(lugs: Sequence[Outline], shape: SoleShape) -> int:
         else shapely.Polygon(lug.points)
         for lug in lugs
     ]
-    return sum(plan.intersection(each).area > _TOUCHED for each in areas)
+    return sum(plan.intersection(area).area > _TOUCHED for area in areas)
 
 
 def check_printable(shape: SoleShape) -> None:
@@ -128,7 +128,7 @@ def check_printable(shape: SoleShape) -> None:
     if tread is not None and tread.depth > 0:
         fine += [("tread.lug_width", "a lug", tread.smallest_lug)]
         fine += [("tread.channel_width", "a channel", tread.channel_width)]
-        fine += [("tread.grooves", "a groove", each.width) for each in tread.grooves]
+        fine += [("tread.grooves", "a groove", groove.width) for groove in tread.grooves]
         if tread.sipes is not None:
             fine += [("sipes.width", "a sipe", tread.sipes.width)]
             left = tread.sipes.spacing - tread.sipes.width
@@ -182,7 +182,7 @@ def _half_ring(channel: ArcChannel) -> Any:
     return raise_face(closed(outer), 0.3) - raise_face(closed(inner), 0.3)
 
 
-def _rounded(
+def _round_edges(
     body: Any,
     edges: list[int],
     radius: float,
@@ -252,7 +252,7 @@ def _free_lugs(lugs: Sequence[Outline], shape: SoleShape) -> list[Outline]:
         if shape.inward_distance(around[:, 0], around[:, 1]).min() < clear:
             continue
         (x, y), reach = (low + high) / 2, math.hypot(*(high - low)) / 2 + clear
-        if any(each.channel_distance(x, y) > -reach for each in shape.tread.grooves):
+        if any(groove.channel_distance(x, y) > -reach for groove in shape.tread.grooves):
             continue
         if ((kinks > low[0] - clear) & (kinks < high[0] + clear)).any():
             continue
@@ -315,14 +315,14 @@ def write_sole(shape: SoleShape, path: Path | str, *, solid: SoleSolid | None = 
     made = solid or sole_solid(shape)
     draft = path.with_name(f"{path.stem}.draft{kind}")
     try:
-        volume, triangles = _written(made, draft, path)
+        volume, triangles = _write_draft(made, draft, path)
         draft.replace(path)
     finally:
         draft.unlink(missing_ok=True)
     return SoleFile(path, made.volume, volume, triangles, made.lugs, made.remarks)
 
 
-def _written(made: SoleSolid, draft: Path, path: Path) -> tuple[float, int]:
+def _write_draft(made: SoleSolid, draft: Path, path: Path) -> tuple[float, int]:
     """Write ``draft`` and return the volume (m^3) and triangles read back from it.
 
     Raises:
@@ -371,7 +371,7 @@ def sole_mesh(made: SoleSolid) -> Any:
         # of a sliver between two walls the kernel may draw nothing
         if candidate.is_watertight or trimesh.repair.fill_holes(candidate, use_fan=True):
             return candidate
-    return _meshed(made)
+    return _mesh_body(made)
 
 
 def _without_pairs(faces: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -382,7 +382,7 @@ def _without_pairs(faces: NDArray[np.intp]) -> NDArray[np.intp]:
     return faces[count[index.ravel()] == 1]
 
 
-def _meshed(made: SoleSolid) -> Any:
+def _mesh_body(made: SoleSolid) -> Any:
     """Return the surface mesh of the finite-element mesher: slower, but closed on any solid."""
     trimesh = optional_module("trimesh", "cad", WRITING)
     step = optional_module("netgen.meshing", "cad", WRITING).MeshingStep.MESHSURFACE

@@ -62,7 +62,7 @@ def wear_measures(shape: SoleShape, *, spacing: float = MEASURING_CELL) -> WearM
     removed = np.where(inside, shape.land_height(x, y) - shape.unworn_height(x, y), 0.0)
     raised = (cut_heel(shape, x, y)[0] - cut_heel(new, x, y)[0])[inside]
     depth = np.where(inside, 0.0 if shape.tread is None else shape.tread.depth, 0.0)
-    return _measured(removed, inside, depth, float(raised.sum()) * spacing**2, spacing)
+    return _wear_measures(removed, inside, depth, float(raised.sum()) * spacing**2, spacing)
 
 
 def surface_wear_measures(new: SoleSurface, worn: SoleSurface) -> WearMeasures:
@@ -81,7 +81,7 @@ def surface_wear_measures(new: SoleSurface, worn: SoleSurface) -> WearMeasures:
     if lugs.size:
         depth = np.where(depth < SHALLOW * np.median(lugs), 0.0, depth)
     area = new.spacing**2
-    return _measured(removed, inside, depth, float(raised.sum()) * area, new.spacing)
+    return _wear_measures(removed, inside, depth, float(raised.sum()) * area, new.spacing)
 
 
 def _worn_share(beyond: Array) -> Array:
@@ -94,7 +94,7 @@ def _worn_share(beyond: Array) -> Array:
     return np.clip(0.5 + beyond / np.maximum(steepness, 1e-12), 0.0, 1.0)
 
 
-def _measured(
+def _wear_measures(
     removed: Array, inside: Mask, depth: Array, volume: float, spacing: float
 ) -> WearMeasures:
     """Return the measures from removed thickness and height of the lugs (m), cell by cell."""

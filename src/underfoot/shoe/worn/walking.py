@@ -106,13 +106,13 @@ def _round(x: Array, height: Array, width: Array, volume: float) -> tuple[Array,
     offsets = np.empty(len(LANDING))
     for number, (angle, share) in enumerate(LANDING):
         slope = math.tan(angle)
-        offset = _lowered(height + slope * x, width, share * volume)
+        offset = _cut_level(height + slope * x, width, share * volume)
         height = np.maximum(height, offset - slope * x)
         offsets[number] = offset
     return offsets, height
 
 
-def _lowered(above: Array, width: Array, volume: float) -> float:
+def _cut_level(above: Array, width: Array, volume: float) -> float:
     """Return c with sum width max(c - above, 0) = volume: how far a plane cuts."""
     order = np.argsort(above)
     heights, widths = above[order], width[order]

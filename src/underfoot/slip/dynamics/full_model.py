@@ -158,10 +158,10 @@ def full_run(
     if cache is not None and setting.key:
         stored = cache.load(key)
         if stored is not None:
-            return _restored(stored, walker)
-    run = _computed(setting, walker, inlet_diameter, step, progress)
+            return _run_of_arrays(stored, walker)
+    run = _compute_run(setting, walker, inlet_diameter, step, progress)
     if cache is not None and setting.key and run.motion.status is Status.CONVERGED:
-        cache.store(key, _stored(run))
+        cache.store(key, _arrays_of_run(run))
     return run
 
 
@@ -206,7 +206,7 @@ def pressed_area(load: Array, pressure: Array, spacing: float) -> float:
     return float(load.sum()) ** 2 / square * spacing**2 if square > 0 else 0.0
 
 
-def _computed(
+def _compute_run(
     setting: Setting, walker: Walker, inlet: float, step: float, progress: Progress
 ) -> FullRun:
     zero = np.zeros((MAP_X.size, MAP_Y.size), dtype=np.float32)
@@ -245,7 +245,7 @@ def _computed(
     )
 
 
-def _stored(run: FullRun) -> dict[str, object]:
+def _arrays_of_run(run: FullRun) -> dict[str, object]:
     motion = run.motion
     return {
         **{name: getattr(motion, name) for name in COLUMNS},
@@ -259,7 +259,7 @@ def _stored(run: FullRun) -> dict[str, object]:
     }
 
 
-def _restored(stored: dict[str, np.ndarray], walker: Walker) -> FullRun:
+def _run_of_arrays(stored: dict[str, np.ndarray], walker: Walker) -> FullRun:
     motion = SlipMotion(
         walker,
         **{name: stored[name] for name in COLUMNS},

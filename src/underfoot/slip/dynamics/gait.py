@@ -62,7 +62,7 @@ class GaitHistory:
     notes: tuple[str, ...] = field(default=())
 
     def __post_init__(self) -> None:
-        where = f"history {self.name}"
+        where = Message("history {name}", name=self.name)
         for label in ("time", "normal", "ratio", "foot_angle", "heel_velocity"):
             values = getattr(self, label)
             if values is None:
@@ -123,7 +123,7 @@ class GaitHistory:
         if not early.any() or self.ratio[early].max() <= 0:
             raise InputError(
                 "no braking above 15 % of body weight in the first half",
-                where=f"history {self.name}",
+                where=Message("history {name}", name=self.name),
                 remedy="Give a whole stance, with braking as positive ratio",
             )
         return float(self.ratio[early].max())

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 from underfoot.trials.machines.pressures import pressure_pulse
 from underfoot.trials.recording.measurement import Measurement
 from underfoot.trials.recording.trial import Channel, Marker
@@ -101,7 +102,7 @@ def observe_slip(
     peak = recorded.peak_speed.value
     flags = tuple(flag.message for flag in recorded.peak_speed.flags)
     if peak is None:
-        flags = (*flags, f"no peak: {recorded.peak_speed.reason}")
+        flags = (*flags, Message("no peak: {reason}", reason=recorded.peak_speed.reason))
     end = recorded.end if math.isfinite(recorded.end) else float(motion.time[-1])
     distance = float(np.interp(end, motion.time, motion.distance))
     rows: tuple[float, ...] = ()

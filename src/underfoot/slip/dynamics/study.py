@@ -404,7 +404,7 @@ def _reduced_subjects(
 ) -> list[SubjectSlip]:
     subjects = []
     for i, walker in enumerate(walkers):
-        motion = _thinned(sole.motion(walker))
+        motion = _thin_motion(sole.motion(walker))
         pressures = None if shape is None else array_pressures(motion, shape.maps(motion), array)
         subjects.append(_subject(motion, pressures, array, limits, i))
     return subjects
@@ -438,7 +438,7 @@ def _subject(
     return SubjectSlip(motion.walker, motion, pressures, seen)
 
 
-def _thinned(motion: SlipMotion, every: int = 4) -> SlipMotion:
+def _thin_motion(motion: SlipMotion, every: int = 4) -> SlipMotion:
     """Return the motion at every fourth instant: what drawings and sensors need."""
     keep = np.unique(np.append(np.arange(0, motion.time.size, every), motion.time.size - 1))
     return replace(motion, **{name: getattr(motion, name)[keep] for name in COLUMNS})
@@ -474,7 +474,8 @@ def _wilson(hits: int, count: int) -> tuple[float, float]:
     share, z = hits / count, Z95
     middle = (share + z * z / (2 * count)) / (1 + z * z / count)
     half = z * math.sqrt(share * (1 - share) / count + z * z / (4 * count**2)) / (1 + z * z / count)
-    return max(middle - half, 0.0), min(middle + half, 1.0)
+    # the ends of none and of all are exact: rounding leaves 1e-17 of them
+    return middle - half if hits else 0.0, middle + half if hits < count else 1.0
 
 
 def _breaches(setting: Setting, runs: Sequence[FullRun]) -> tuple[str, ...]:

@@ -92,7 +92,7 @@ def land_compliance(
     from scipy.linalg import cho_factor, cho_solve
 
     progress("Condensing the sole to its land", 0.0)
-    stiffness, load = _assembled(mesh, outsole, midsole)
+    stiffness, load = _assemble(mesh, outsole, midsole)
     if loaded is None:
         loaded = np.ones(len(mesh.land), bool)
     chosen = mesh.land[loaded]
@@ -122,7 +122,7 @@ def land_compliance(
     )
 
 
-def _assembled(
+def _assemble(
     mesh: SoleMesh, outsole: Rubber, midsole: Rubber | None
 ) -> tuple[sp.csr_matrix, sp.csr_matrix]:
     """Return the stiffness of the free unknowns and their loads by the hats of all nodes.

@@ -71,7 +71,7 @@ def sole_mesh(
     levels: list[Array] = []
     if treaded:
         levels += [lug * step / lug_layers for step in range(lug_layers)]
-    heights = _graded(layers.thickness, element)
+    heights = _layer_shares(layers.thickness, element)
     levels += [lug + body * share for share in heights]
     outsole_levels = len(levels)
     if layers.midsole_thickness > 0:
@@ -98,7 +98,7 @@ def sole_mesh(
     )
 
 
-def _graded(thickness: float, element: float) -> Array:
+def _layer_shares(thickness: float, element: float) -> Array:
     """Return the shares 0 to 1 of the layers, growing from the size of an element upward."""
     steps, total, step = [], 0.0, 1.2 * element
     while total < thickness:

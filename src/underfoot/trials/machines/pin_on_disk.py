@@ -185,7 +185,7 @@ def friction_point(
             "{scatter}, and {zero:.2g} of the zero", scatter=choices["uncertainty"], zero=from_zero
         )
     measurement = Measurement("cof", mean, "1", error, reason, len(values), tuple(flags), choices)
-    speed = _speed(trial, used) if speed is None else speed
+    speed = _mean_speed(trial, used) if speed is None else speed
     forces = normal, shear
     load, push = (None if f is None else float(np.abs(f[used]).mean()) for f in forces)
     ends = float(time[used[0]]), float(time[used[-1]])
@@ -444,7 +444,7 @@ def _other_cof(trial: Trial, used: np.ndarray) -> tuple[float, float] | None:
     return (middle[0], middle[1]) if differ else None
 
 
-def _speed(trial: Trial, used: np.ndarray) -> float | None:
+def _mean_speed(trial: Trial, used: np.ndarray) -> float | None:
     channel = speed_channel(trial)
     if channel is None or channel.unit != "m/s":
         return None

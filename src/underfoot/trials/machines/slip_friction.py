@@ -283,7 +283,7 @@ def _sliding(
     trial: Trial, plate: Plate, normal: np.ndarray, shear: np.ndarray
 ) -> tuple[float | None, Message, Channel | None]:
     """Return the start of sliding (s), how it was found, and the sliding speed if known."""
-    speed, how = _speed(trial)
+    speed, how = _speed_source(trial)
     if speed is not None:
         size = np.abs(np.nan_to_num(speed.values))
         top = float(np.percentile(size, 95))
@@ -315,7 +315,7 @@ def speed_channel(trial: Trial) -> Channel | None:
         return None
 
 
-def _speed(trial: Trial) -> tuple[Channel | None, Message]:
+def _speed_source(trial: Trial) -> tuple[Channel | None, Message]:
     share = 100 * _MOVING
     channel = speed_channel(trial)
     if channel is not None and channel.unit == "m/s":

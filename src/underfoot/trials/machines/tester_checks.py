@@ -295,7 +295,7 @@ class _Slide:
     def course(self) -> Iterator[Flag]:
         """Flag more than one slide, a shoe that stops, and a clock that can't be right."""
         gap = max(1, round(0.05 * self.rate))
-        loads = _joined(runs(self.loaded), gap)
+        loads = _join_runs(runs(self.loaded), gap)
         loads = [run for run in loads if run[1] - run[0] > 0.1 * (loads[0][1] - loads[0][0])]
         count, speed = len(loads), self.slide.speed
         lasting = float(self.loaded.sum()) / self.rate
@@ -306,7 +306,7 @@ class _Slide:
             loaded = np.interp(speed.time, self.time, self.loaded.astype(float)) > 0.5
             inside = (speed.time >= self.slide.window[0]) & (speed.time <= self.slide.window[1])
             top = float(np.percentile(size[loaded], 95)) if loaded.any() else 0.0
-            moving = _joined(runs(loaded & (size > 0.3 * top)), round(0.05 * speed.rate))
+            moving = _join_runs(runs(loaded & (size > 0.3 * top)), round(0.05 * speed.rate))
             moving = [run for run in moving if run[1] - run[0] > 0.05 * speed.rate]
             count = max(count, len(moving))
             if inside.any() and size[inside].mean() > 0:
@@ -387,7 +387,7 @@ class _Slide:
                 yield from NOISE.above(max(ratio, 1.0 / ratio), words)
 
 
-def _joined(parts: list[tuple[int, int]], gap: int) -> list[tuple[int, int]]:
+def _join_runs(parts: list[tuple[int, int]], gap: int) -> list[tuple[int, int]]:
     """Return the runs with gaps of at most ``gap`` samples closed."""
     out: list[tuple[int, int]] = []
     for start, stop in parts:

@@ -154,11 +154,13 @@ def trial_figures(analysis: FolderAnalysis, *, details: int = 4) -> list[TrialFi
 
     ``details`` is the number of single trials drawn: first those with cautions, then accepted ones.
     """
-    single = [made for result in _chosen(analysis.files, details) for made in _details(result)]
+    single = [
+        made for result in _choose_files(analysis.files, details) for made in _details(result)
+    ]
     return [*_study(analysis), *single]
 
 
-def _chosen(files: Sequence[FileResult], details: int) -> list[FileResult]:
+def _choose_files(files: Sequence[FileResult], details: int) -> list[FileResult]:
     drawn = [file for file in files if file.curves]
     slips = [result for result in drawn if result.main.get("slip") == 1.0]
     others = [result for result in drawn if result not in slips]
@@ -210,7 +212,7 @@ def _array(values: Sequence[float | None]) -> np.ndarray:
     return np.array([np.nan if v is None else v for v in values], dtype=float)
 
 
-def _loaded(curve: Curve, least: float) -> np.ndarray:
+def _loaded_ratio(curve: Curve, least: float) -> np.ndarray:
     """Return the ratio where the normal force is above ``least`` (N), else NaN."""
     return np.where(_array(curve["normal"]) > least, _array(curve["ratio"]), np.nan)
 
@@ -226,7 +228,7 @@ def _steps(steps: Sequence[Curve], _: FileResult) -> Figure:
         top.plot(time, _array(step["across"]), color="tab:orange", label="across")
         top.axhline(0, color="0.8", linewidth=0.8)
         _finish(top, small=step["step"])
-        low.plot(time, _loaded(step, 20), color="tab:green")
+        low.plot(time, _loaded_ratio(step, 20), color="tab:green")
         low.axvline(1e3 * step["gate"], color="0.6", linestyle=":", label="gate passed")
         low.plot(*peak, "o", color="black", label="required friction")
         low.annotate(f"{peak[1]:.3f}", peak, textcoords="offset points", xytext=(6, 4), fontsize=9)
@@ -400,11 +402,13 @@ def _tile(key: str, result: FileResult, curve: Curve) -> tuple[Tile, float]:
     time = _array(curve["time"])
     if key == "rejected":
         label = f"{result.file}, {curve['step']}"
-        return Tile(label, key, time, _loaded(curve, 50), reason=curve["reason"]), 0.0
+        return Tile(label, key, time, _loaded_ratio(curve, 50), reason=curve["reason"]), 0.0
     if key == "steps":
         label, verdict = f"{result.file}, {curve['step']}", curve.get("verdict", result.verdict)
         mark = ((curve["peak_time"], curve["peak"]),)
-        return Tile(label, verdict, time, _loaded(curve, 50), mark, f"{curve['peak']:.3f}"), 0.0
+        return Tile(
+            label, verdict, time, _loaded_ratio(curve, 50), mark, f"{curve['peak']:.3f}"
+        ), 0.0
     marks: tuple[tuple[float, float], ...] = ()
     if key == "heel":
         values, remark, height, peak = _array(curve["speed"]), "not judged", 0.0, curve["peak"]
@@ -414,7 +418,7 @@ def _tile(key: str, result: FileResult, curve: Curve) -> tuple[Tile, float]:
         until = time < (curve["end"] or 0.8) + 0.03
         time, values = time[until], values[until]
     elif key == "slide":
-        values, cof = _loaded(curve, 50), result.main.get("cof")
+        values, cof = _loaded_ratio(curve, 50), result.main.get("cof")
         remark, height = ("no COF", 0.0) if cof is None else (f"{cof:.3f}", 2.0 * cof)
     elif key == "run":
         values, cof = _array(curve["ratio"]), curve["cof"]
@@ -504,9 +508,9 @@ def _fits(fits: Sequence[Curve]) -> Figure:
             colour = f"C{number % 10}"
             speed, cof = np.array(curve["speed"]), np.array(curve["cof"])
             grid = np.linspace(0, 1.02 * speed.max(), 120)
-            top.plot(grid, _fitted(curve, grid), color=colour, linewidth=0.9)
+            top.plot(grid, _fitted_curve(curve, grid), color=colour, linewidth=0.9)
             top.plot(speed, cof, "o", ms=2.6, color=colour)
-            low.plot(speed, cof - _fitted(curve, speed), "o", ms=2.2, color=colour)
+            low.plot(speed, cof - _fitted_curve(curve, speed), "o", ms=2.2, color=colour)
         verdicts = [f["verdict"] for f in curves]
         words = ", ".join(f"{verdicts.count(v)} {v}" for v in dict.fromkeys(verdicts))
         low.axhline(0, color="0.7", linewidth=0.8)
@@ -521,7 +525,7 @@ def _fits(fits: Sequence[Curve]) -> Figure:
     return figure
 
 
-def _fitted(curve: Curve, speed: np.ndarray) -> np.ndarray:
+def _fitted_curve(curve: Curve, speed: np.ndarray) -> np.ndarray:
     if curve["verdict"] == "mean":
         return np.full(len(speed), curve["mean"])
     boundary, tau, asymptote = curve["raw"]

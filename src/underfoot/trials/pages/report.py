@@ -95,7 +95,9 @@ def write_trials_report(
     jobs += [(figure, folder / "figures") for figure in figures]
     count = processes if len(jobs) >= _MANY else 1
     drawing = part(progress, 0.0, 0.95)
-    for _, paths in sorted(in_processes(_written, jobs, count, progress=drawing, stage="drawing")):
+    for _, paths in sorted(
+        in_processes(_write_file, jobs, count, progress=drawing, stage="drawing")
+    ):
         written += paths
     pictures = [
         (figure, (folder / "figures" / f"{figure.name}.png").read_bytes()) for figure in figures
@@ -105,7 +107,7 @@ def write_trials_report(
     return written
 
 
-def _written(job: tuple[Any, ...]) -> list[Path]:
+def _write_file(job: tuple[Any, ...]) -> list[Path]:
     """Write the spreadsheet (tables, methods, path) or a figure (figure, folder)."""
     if not isinstance(job[0], TrialFigure):
         write_spreadsheet(*job)
@@ -140,7 +142,7 @@ def trials_page(
     tables = {table.name: table for table in all_tables}
     return environment(__package__ or "").get_template("trials.html").render(
         analysis=analysis,
-        number=_counted(len(analysis.files), "files"),
+        number=_count_text(len(analysis.files), "files"),
         **study_parts(analysis),
         first=chapters["study"][:1],
         figures={**chapters, "study": chapters["study"][1:]},
@@ -218,7 +220,7 @@ def lead_sentence(analysis: FolderAnalysis) -> Message:
         if "low" in shown and "high" in shown:
             more = Message(", SD {spread}, 95 % {low} to {high}", **shown)
         counted = [
-            _counted(cell, head.name) for head, cell in row if head.role is Role.COUNT and cell
+            _count_text(cell, head.name) for head, cell in row if head.role is Role.COUNT and cell
         ]
         return Message(
             "{label} {average}{more} ({counted}).{tail}",
@@ -226,7 +228,7 @@ def lead_sentence(analysis: FolderAnalysis) -> Message:
         )  # fmt: skip
     samples = tables.get("samples")
     if samples is not None:
-        counted = _counted(len(samples.rows), "samples")
+        counted = _count_text(len(samples.rows), "samples")
         return Message("{counted}.{tail}", counted=counted, tail=tail)
     cof = [result.main["cof"] for result in usable if "cof" in result.main]
     if cof:
@@ -257,7 +259,7 @@ def _slips(usable: Sequence[FileResult]) -> Message:
     )  # fmt: skip
 
 
-def _counted(number: object, things: str) -> Message:
+def _count_text(number: object, things: str) -> Message:
     """Return a number with what it counts: 1 file, 2 files."""
     return Message(
         "{number} {things}", number=number, things=things if number != 1 else things[:-1]
@@ -322,7 +324,7 @@ def page_table(table: TrialTable, *, limit: int = _LONG) -> dict[str, Any]:
     return {
         "title": table.title,
         "columns": [table.columns[i] for i in filled],
-        "rows": [[_shown(row[i], table.heads[i]) for i in filled] for row in rows],
+        "rows": [[_cell_text(row[i], table.heads[i]) for i in filled] for row in rows],
         "below": [join_lines(row[i] for i in below if row[i]) for row in rows],
         "numbers": [
             all(isinstance(row[i], int | float) or row[i] in (None, "") for row in table.rows)
@@ -332,7 +334,7 @@ def page_table(table: TrialTable, *, limit: int = _LONG) -> dict[str, Any]:
     }
 
 
-def _shown(value: Any, head: TrialColumn) -> str:
+def _cell_text(value: Any, head: TrialColumn) -> str:
     if value is None or value == "":
         return "–"
     if isinstance(value, str):

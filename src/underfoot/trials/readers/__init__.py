@@ -141,7 +141,7 @@ def _content(path: Path, *, in_parts: bool) -> tuple[bytes, FileBytes | None]:
             return b"", FileBytes(path)
         data = path.read_bytes()
     except OSError as error:
-        words = f"can't be read: {error.strerror or error}"
+        words = Message("can't be read: {strerror}", strerror=error.strerror or error)
         raise DataError(words, where=path.name or str(path)) from error
     if not data:
         raise DataError("empty", where=path.name)

@@ -32,7 +32,7 @@ def read_bts(draft: RecordingDraft) -> Trial:
     named = dict(zip(draft.names(labels, "track"), numbers.T, strict=True))
     if any(label.lstrip("e") in _EVENTS for label in labels):
         events = [
-            Event(*_named(label, float(when)))
+            Event(*_named_event(label, float(when)))
             for label, column in named.items()
             if label.lstrip("e") in _EVENTS
             for when in column[np.isfinite(column)]
@@ -57,6 +57,6 @@ def _heads(line: str) -> bool:
     return len(cells) > 1 and ":" not in cells[0] and bool(cells[0]) and not is_number(cells[0])
 
 
-def _named(label: str, when: float) -> tuple[str, float, str, str]:
+def _named_event(label: str, when: float) -> tuple[str, float, str, str]:
     name, side = _EVENTS[label.lstrip("e")]
     return name, when, side, f'file, "{label}"'

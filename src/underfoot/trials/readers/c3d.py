@@ -303,11 +303,11 @@ def _scaled_analog(raw: np.ndarray, shell: C3DFile, real: bool) -> np.ndarray:
         offset = np.where(offset < 0, offset + 65536, offset)
     general = shell.number("ANALOG", "GEN_SCALE", 1.0)
     scale = shell.continued("ANALOG", "SCALE").ravel(order="F")
-    samples = (raw - _padded(offset, n, 0.0)) * (_padded(scale, n, 1.0) * general)
+    samples = (raw - _pad(offset, n, 0.0)) * (_pad(scale, n, 1.0) * general)
     return np.where(np.abs(samples) < _POSSIBLE, samples, np.nan)
 
 
-def _padded(values: np.ndarray, n: int, fill: float) -> np.ndarray:
+def _pad(values: np.ndarray, n: int, fill: float) -> np.ndarray:
     padded = np.full(n, fill)
     padded[: min(n, values.size)] = values[:n]
     return padded

@@ -53,16 +53,17 @@ def c3d_bytes(
         "POINT": {
             "USED": _integers([len(markers)]), "FRAMES": _integers([min(frames, _MOST)]),
             "DATA_START": _integers([0]), "SCALE": _floats([-1.0]), "RATE": _floats([marker_rate]),
-            "UNITS": _texts(["mm"], single=True), **_continued("LABELS", list(markers), _texts),
-            **_continued("DESCRIPTIONS", [description] * len(markers), _texts),
+            "UNITS": _texts(["mm"], single=True),
+            **_continue_parameter("LABELS", list(markers), _texts),
+            **_continue_parameter("DESCRIPTIONS", [description] * len(markers), _texts),
         },
         "ANALOG": {
             "USED": _integers([count]), "GEN_SCALE": _floats([1.0]), "RATE": _floats([analog_rate]),
-            **_continued("SCALE", [1.0] * count, _float_vector),
-            **_continued("OFFSET", [0] * count, _integer_vector),
-            **_continued("UNITS", [unit for _, unit in analog.values()], _texts),
-            **_continued("LABELS", names, _texts),
-            **_continued("DESCRIPTIONS", [description] * count, _texts),
+            **_continue_parameter("SCALE", [1.0] * count, _float_vector),
+            **_continue_parameter("OFFSET", [0] * count, _integer_vector),
+            **_continue_parameter("UNITS", [unit for _, unit in analog.values()], _texts),
+            **_continue_parameter("LABELS", names, _texts),
+            **_continue_parameter("DESCRIPTIONS", [description] * count, _texts),
         },
     }  # fmt: skip
     if last_frame > _MOST:
@@ -89,9 +90,9 @@ def c3d_bytes(
         minutes = [[time // 60.0, time % 60.0] for time in times]
         groups["EVENT"] = {
             "USED": _integers([len(events)]),
-            **_continued("CONTEXTS", contexts, _texts),
-            **_continued("LABELS", labels, _texts),
-            **_continued("TIMES", minutes, lambda part: _array(np.array(part))),
+            **_continue_parameter("CONTEXTS", contexts, _texts),
+            **_continue_parameter("LABELS", labels, _texts),
+            **_continue_parameter("TIMES", minutes, lambda part: _array(np.array(part))),
         }
     body = _parameters(groups)
     blocks = -(-(len(body) + 4) // 512)
@@ -131,7 +132,7 @@ def _parameters(groups: Mapping[str, Mapping[str, bytes]]) -> bytes:
     return out + b"\0\0"
 
 
-def _continued(
+def _continue_parameter(
     name: str, values: Sequence[Any], content: Callable[[Sequence[Any]], bytes]
 ) -> dict[str, bytes]:
     """A list as one parameter, or as several of 255 entries: LABELS, LABELS2, LABELS3 ..."""

@@ -135,14 +135,14 @@ def _with_axes_behind(sheet: Sheet) -> Sheet:
 
 def _is_known(sheet: Sheet) -> bool:
     """Whether the columns tell by themselves what they are: a time, and forces or a COF."""
-    folded = {_folded(name) for name in sheet.numbers}
+    folded = {_fold_name(name) for name in sheet.numbers}
     forces = folded & _NORMAL and folded & _SHEAR
     return any(_is_time(sheet, name) for name in sheet.numbers) and bool(
         forces or folded & _COF or _plate_groups(sheet)
     )
 
 
-def _folded(name: str) -> str:
+def _fold_name(name: str) -> str:
     return re.sub("^daq|[^a-z\u03bc]", "", name.casefold())
 
 
@@ -164,7 +164,7 @@ def trial_from_sheet(draft: RecordingDraft, sheet: Sheet, source: str) -> Trial:
         if name in draft.channels:
             continue
         written = sheet.units.get(name, "")
-        force = force_unit(written) if _folded(name) in _NORMAL | _SHEAR else None
+        force = force_unit(written) if _fold_name(name) in _NORMAL | _SHEAR else None
         if force and not si_unit(written):  # a mass, which stands for its weight
             note = Message('in "{written}" in the file', written=written)
             draft.channel(name, values, unit="N", scale=force[1], note=note)

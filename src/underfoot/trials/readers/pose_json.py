@@ -55,10 +55,14 @@ def read_pose_json(draft: RecordingDraft) -> Trial:
         draft.rate = rate
     places = {}
     for name, path_of in points.items():
-        rows = [[np.nan] * 3 if v is None else list(v)[:3] for v in path_of]
-        places[str(name)] = values = np.array(rows, dtype=float)
+        try:
+            rows = [[np.nan] * 3 if v is None else list(v)[:3] for v in path_of]
+            values = np.array(rows, dtype=float)
+        except (TypeError, ValueError):  # a coordinate is missing, or a word
+            values = np.empty((0, 0))
         if values.ndim != 2 or values.shape[1] != 3 or values.size > _MOST:
             raise draft.error(Message("{name} has no three coordinates a frame", name=name))
+        places[str(name)] = values
     if len({len(v) for v in places.values()}) != 1:
         raise draft.error("points have different numbers of frames")
     written = str(top.get("unit", top.get("units", "")))

@@ -98,7 +98,7 @@ def read_profile(path: Path) -> TrialsProfile:
 
 def profile_from(data: Mapping[str, Any], *, where: str = "profile") -> TrialsProfile:
     """Return the profile in plain data (the parsed TOML); errors as ``read_profile``."""
-    _known(data, ("name", *_PARTS), where)
+    _check_keys(data, ("name", *_PARTS), where)
     parts = {name: _part(data, name, keys, where) for name, keys in _PARTS.items()}
     file, axes, subject = parts["file"], parts["axes"], parts["subject"]
     for key, axis in axes.items():
@@ -148,7 +148,7 @@ def profile_from(data: Mapping[str, Any], *, where: str = "profile") -> TrialsPr
     )
 
 
-def _known(data: Mapping[str, Any], allowed: tuple[str, ...], where: str) -> None:
+def _check_keys(data: Mapping[str, Any], allowed: tuple[str, ...], where: str) -> None:
     for key in data:
         if key not in allowed:
             raise InputError(
@@ -170,7 +170,7 @@ def _part(
             allowed=f"[{key}]",
         )
     if allowed:
-        _known(part, allowed, f"{where}.{key}")
+        _check_keys(part, allowed, f"{where}.{key}")
     return part
 
 
@@ -209,7 +209,7 @@ def _quantity(data: Mapping[str, Any], key: str, unit: str, where: str) -> float
 def _channel(value: object, where: str) -> tuple[str, str, float]:
     if not isinstance(value, Mapping) or not isinstance(value.get("column"), str):
         raise InputError("a channel needs its column", where=where, allowed='column = "P1"')
-    _known(value, ("column", "unit", "scale"), where)
+    _check_keys(value, ("column", "unit", "scale"), where)
     unit = _unit(value["unit"], "", f"{where}.unit") if "unit" in value else ""
     scale = value.get("scale", 1.0)
     if not _is_number(scale):
@@ -238,7 +238,7 @@ def _numbers(value: object, where: str) -> tuple[float, float, float]:
 def _plate(value: object, where: str) -> PlateColumns:
     if not isinstance(value, Mapping):
         raise InputError("a plate needs its force columns", where=where)
-    _known(value, (*PlateColumns.__dataclass_fields__, "friction", "normal"), where)
+    _check_keys(value, (*PlateColumns.__dataclass_fields__, "friction", "normal"), where)
     force = _force_columns(value, where)
     force_is = value.get("force_is", "on the foot")
     if force_is not in ("on the foot", "on the plate"):
@@ -305,7 +305,7 @@ def with_channels(
 def _marker(value: object, where: str) -> tuple[tuple[str, str, str], str]:
     if not isinstance(value, Mapping) or "columns" not in value:
         raise InputError("a marker needs its three columns", where=where)
-    _known(value, ("columns", "unit"), where)
+    _check_keys(value, ("columns", "unit"), where)
     unit = _unit(value.get("unit", "m"), "m", f"{where}.unit")
     return _three(value["columns"], f"{where}.columns"), unit
 

@@ -102,7 +102,7 @@ def unseen(path: np.ndarray, *, every_repeat: bool = False) -> dict[str, np.ndar
     ``every_repeat``: every repeated place was lost, as the system that wrote it says.
     """
     lost = {}
-    for kind, mask_of in ((SIGN, _signs), (HELD, partial(_held, every=every_repeat)),
+    for kind, mask_of in ((SIGN, _signs), (HELD, partial(_held_frames, every=every_repeat)),
                           (STRAIGHT, _straight)):  # fmt: skip
         mask = mask_of(path)
         if mask.any():
@@ -160,7 +160,7 @@ def _digit(path: np.ndarray) -> float:
     return digit if (np.abs(count - np.round(count)) < 0.05).all() else single
 
 
-def _held(path: np.ndarray, *, every: bool) -> np.ndarray:
+def _held_frames(path: np.ndarray, *, every: bool) -> np.ndarray:
     held = np.zeros(len(path), dtype=bool)
     steps = _steps(path)
     still = steps == 0.0

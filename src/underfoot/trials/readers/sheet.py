@@ -78,7 +78,7 @@ def sheet_from(
     notes: list[str] = []
     if is_workbook(data):
         rows = workbook_rows(data, where, sheet, notes)
-        inside = units_in_cells(rows, _known)
+        inside = units_in_cells(rows, _is_known_unit)
         rows = [without_units(row, inside) for row in rows] if inside else rows
         table = _layout(rows, header_line, where)
         return _sheet(rows, table, rows[table.first :], None, inside, where, notes)
@@ -89,7 +89,7 @@ def sheet_from(
     if delimiter is None:
         delimiter = text.delimiter_of(body)
     rows = [text.split(line, delimiter) for line in lines[: max(_HEAD, header_line or 0) + 2]]
-    inside = units_in_cells(rows, _known)
+    inside = units_in_cells(rows, _is_known_unit)
     rows = [without_units(row, inside) for row in rows] if inside else rows
     table = _layout(rows, header_line, where)
     lines = _without_footer(lines, table.first, delimiter, notes)
@@ -244,7 +244,7 @@ def _are_units(row: list[str]) -> bool:
     return bool(filled) and all(si_unit(cell) for cell in filled)
 
 
-def _known(word: str) -> bool:
+def _is_known_unit(word: str) -> bool:
     return force_unit(word) is not None
 
 
@@ -268,7 +268,7 @@ def workbook_rows(data: bytes, where: str, sheet: str | None, notes: list[str]) 
     most = max(counts.values())
     name = next(name for name, count in counts.items() if 2 * count >= most)
     if len(sheets) > 1:
-        notes.append(f'sheet "{name}" of {", ".join(sheets)}')
+        notes.append(Message('sheet "{name}" of {sheets}', name=name, sheets=", ".join(sheets)))
     return sheets[name]
 
 
@@ -300,7 +300,7 @@ def _xlsx(data: bytes, where: str, sheet: str | None) -> dict[str, list[list[str
     from openpyxl import load_workbook
 
     book = load_workbook(BytesIO(data), read_only=True, data_only=True)
-    names = _chosen([worksheet.title for worksheet in book.worksheets], sheet, where)
+    names = _choose_sheets([worksheet.title for worksheet in book.worksheets], sheet, where)
     return {name: _texts(book[name].iter_rows(values_only=True), where) for name in names}
 
 
@@ -308,14 +308,14 @@ def _xls(data: bytes, where: str, sheet: str | None) -> dict[str, list[list[str]
     import xlrd
 
     book = xlrd.open_workbook(file_contents=data, on_demand=True, logfile=io.StringIO())
-    tables = (book.sheet_by_name(name) for name in _chosen(book.sheet_names(), sheet, where))
+    tables = (book.sheet_by_name(name) for name in _choose_sheets(book.sheet_names(), sheet, where))
     return {
         table.name: _texts((table.row_values(i) for i in range(table.nrows)), where)
         for table in tables
     }
 
 
-def _chosen(names: Sequence[str], sheet: str | None, where: str) -> Sequence[str]:
+def _choose_sheets(names: Sequence[str], sheet: str | None, where: str) -> Sequence[str]:
     """Return the sheet asked for, or all of them."""
     if not names:
         raise DataError("the workbook has no sheet", where=where)

@@ -181,10 +181,10 @@ def plain_numbers(rows: Sequence[str], delimiter: str, notes: list[str]) -> np.n
     Decimal commas are understood, where nothing but a comma can be the decimal sign. None as well
     where a mark may stand between thousands: ``written_forms`` tells.
     """
-    values = _loaded(rows, delimiter)
+    values = _load_numbers(rows, delimiter)
     comma = values is None and delimiter != "," and not any("." in row for row in rows)
     if comma:
-        values = _loaded([row.replace(",", ".") for row in rows], delimiter)
+        values = _load_numbers([row.replace(",", ".") for row in rows], delimiter)
     if values is None:
         return None
     broken = np.abs(values[np.isfinite(values) & (values != np.round(values))])
@@ -197,7 +197,7 @@ def plain_numbers(rows: Sequence[str], delimiter: str, notes: list[str]) -> np.n
     return values
 
 
-def _loaded(rows: Sequence[str], delimiter: str) -> np.ndarray | None:
+def _load_numbers(rows: Sequence[str], delimiter: str) -> np.ndarray | None:
     try:
         values = np.loadtxt(rows, delimiter=delimiter or None, ndmin=2, comments=None)
     except (ValueError, OverflowError):
@@ -447,7 +447,7 @@ def si_unit(text: str) -> tuple[str, float, float] | None:
         parts = [part for part in _SUFFIXES.split(plain) if part]
         names = [_WEIGHTS.get(n := _unit_name(part) or "", n) for part in parts]
         if len(parts) == 1:
-            names = _glued(plain)
+            names = _is_glued_moment(plain)
         if len(names) == 2:
             name = next(
                 (f"{a}*{b}" for a, b in (names, names[::-1]) if f"{a}*{b}" in _MOMENTS), None
@@ -472,7 +472,7 @@ def force_unit(text: str) -> tuple[str, float, float] | None:
     return ("N", _FORCES[_WEIGHTS[name]], 0.0) if name in _WEIGHTS else si_unit(text)
 
 
-def _glued(word: str) -> list[str]:
+def _is_glued_moment(word: str) -> list[str]:
     """Force and arm of a moment written as one word: Nmm, kNm, lbft, kgfcm, inlbf."""
     parts = ((word[:i], word[i:]) for i in range(len(word) - 1, 0, -1))
     pairs = ([_WEIGHTS.get(n := _unit_name(p) or "", n) for p in two] for two in parts)

@@ -5,6 +5,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from underfoot.core.remark import Message
+
 from ..recording.trial import Trial, Vertical
 from .draft import RecordingDraft
 
@@ -37,11 +39,22 @@ def read_mvnx(draft: RecordingDraft) -> Trial:
     if not 0 < draft.rate < 1e4:
         raise draft.error("the subject has no frameRate")
 
+    def numbers(text: str, count: int, what: str) -> np.ndarray:
+        try:
+            row = np.array(text.split(), dtype=float)
+        except ValueError:
+            row = np.empty(0)
+        if row.size != count:
+            raise draft.error(
+                Message("damaged: {what} is not {count} numbers", what=what, count=count),
+                remedy="Export it again",
+            )
+        return row
+
     def values(name: str, width: int) -> np.ndarray:
         texts = [next((element.text or "" for element in every(f, name)), "") for f in frames]
-        rows = [np.array(text.split(), dtype=float) for text in texts]
-        if any(len(row) != width * len(segments) for row in rows):
-            raise draft.error(f"truncated: {name} of {len(segments)} segments is not in each frame")
+        what = Message("{name} of a frame", name=name)
+        rows = [numbers(text, width * len(segments), what) for text in texts]
         return np.array(rows).reshape(len(rows), len(segments), width)
 
     draft.up = Vertical((0.0, 0.0, 1.0), "z as MVN has it")
@@ -53,7 +66,10 @@ def read_mvnx(draft: RecordingDraft) -> Trial:
         for point in every(segment, "point") if "Foot" in label else ():
             place = next(every(point, "pos_b"), None)
             if turn is not None and place is not None and place.text:
-                q, p = turn[:, i], np.array(place.text.split(), dtype=float)
+                q, p = (
+                    turn[:, i],
+                    numbers(place.text, 3, Message("pos_b of a point of {label}", label=label)),
+                )
                 twice = 2.0 * np.cross(q[:, 1:], p)
                 moved = p + q[:, :1] * twice + np.cross(q[:, 1:], twice)
                 name = f"{label.removesuffix('Foot')} {point.get('label', '').removeprefix('p')}"

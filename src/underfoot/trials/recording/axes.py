@@ -42,7 +42,7 @@ class Ramp:
     def __post_init__(self) -> None:
         if not abs(self.angle) <= _STEEPEST:
             allowed = 'from "-30 deg" (walking down) to "30 deg" (walking up)'
-            words = f"a ramp of {math.degrees(self.angle):.4g} deg"
+            words = Message("a ramp of {degrees:.4g} deg", degrees=math.degrees(self.angle))
             raise InputError(words, where="ramp", allowed=allowed)
         if self.plate_frame and self.plate_frame not in PLATE_FRAMES:
             raise unknown_name("plate frame", self.plate_frame, PLATE_FRAMES, where="plate_frame")
@@ -55,11 +55,11 @@ class Ramp:
 
     def surface(self, up: np.ndarray, walking: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return normal and forward tangent of the walking surface in the plate's axes, (3,)."""
-        return _turned(up, walking, self.angle if self.plate_frame == "horizontal" else 0.0)
+        return _turn_axes(up, walking, self.angle if self.plate_frame == "horizontal" else 0.0)
 
     def gravity(self, up: np.ndarray, walking: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return vertical and forward horizontal in the plate's axes, both (3,)."""
-        return _turned(up, walking, -self.angle if self.plate_frame == "surface" else 0.0)
+        return _turn_axes(up, walking, -self.angle if self.plate_frame == "surface" else 0.0)
 
     @property
     def name(self) -> Message:
@@ -92,7 +92,7 @@ def ramp_from(angle: object, plate_frame: str = "", *, where: str = "ramp") -> R
     return Ramp(to_si(angle, "rad", where=where), plate_frame)
 
 
-def _turned(up: np.ndarray, walking: np.ndarray, angle: float) -> tuple[np.ndarray, np.ndarray]:
+def _turn_axes(up: np.ndarray, walking: np.ndarray, angle: float) -> tuple[np.ndarray, np.ndarray]:
     cos, sin = math.cos(angle), math.sin(angle)
     return cos * up - sin * walking, cos * walking + sin * up
 
@@ -336,7 +336,7 @@ def _vertical_line(
     markers: Mapping[str, Marker],
     stated: Vertical | None,
 ) -> tuple[np.ndarray, str]:
-    normals = (plate_normal(each) for each in corners)
+    normals = (plate_normal(corner) for corner in corners)
     framed = [int(np.argmax(np.abs(normal))) for normal in normals if normal is not None]
     if framed:
         return np.eye(3)[Counter(framed).most_common(1)[0][0]], "normal of the force plates"

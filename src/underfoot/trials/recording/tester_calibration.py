@@ -152,10 +152,10 @@ def read_calibration(path: Path) -> TesterCalibration:
     """
     where = path.name
     data = read_toml(path)
-    _known(data, ("tester", "channels", "checks"), where)
+    _check_keys(data, ("tester", "channels", "checks"), where)
     tester, named = data.get("tester", {}), data.get("channels", {})
-    _known(tester, _KEYS["tester"], f"{where}, tester")
-    _known(named, CHANNELS, f"{where}, channels")
+    _check_keys(tester, _KEYS["tester"], f"{where}, tester")
+    _check_keys(named, CHANNELS, f"{where}, channels")
     end = tester.get("valid_until")
     record = TesterCalibration(
         str(tester.get("name", "tester")),
@@ -203,7 +203,7 @@ def written_day(text: str) -> datetime.date | None:
         return None
 
 
-def _known(part: Any, allowed: Collection[str], where: str) -> None:
+def _check_keys(part: Any, allowed: Collection[str], where: str) -> None:
     if not isinstance(part, Mapping):
         raise InputError(Message("{part} is not a table", part=repr(part)), where=where)
     for key in part:
@@ -218,7 +218,7 @@ def _known(part: Any, allowed: Collection[str], where: str) -> None:
 
 
 def _channel(part: Any, unit: str, where: str) -> ChannelCalibration:
-    _known(part, _KEYS["channel"], where)
+    _check_keys(part, _KEYS["channel"], where)
     points = [part.get(key, []) for key in ("reference", "reading")]
     if not all(isinstance(p, list) for p in points) or len(points[0]) != len(points[1]):
         raise InputError("reference and reading are lists of equal length", where=where)
@@ -254,9 +254,9 @@ def _size(given: object, unit: str, where: str) -> float:
 
 
 def _check(part: Any, record: TesterCalibration, where: str) -> DailyCheck:
-    _known(part, _KEYS["check"], where)
+    _check_keys(part, _KEYS["check"], where)
     name = str(part.get("channel", ""))
-    _known({name: 0}, (*CHANNELS, "crosstalk"), where)
+    _check_keys({name: 0}, (*CHANNELS, "crosstalk"), where)
     aside = name == "crosstalk"
     unit = CHANNELS.get(name, "N")
     weight, reading = (_size(part.get(key), unit, where) for key in ("reference", "reading"))

@@ -269,11 +269,11 @@ class Trial(Presentable):
 
         A DataError, with what there is and the nearest match, when none of them is there.
         """
-        return _named("channel", names, self.channels, self.name)
+        return _find_name("channel", names, self.channels, self.name)
 
     def marker(self, *names: str) -> Marker:
         """Return the first marker that has one of ``names``, as ``channel`` does."""
-        return _named("marker", names, self.markers, self.name)
+        return _find_name("marker", names, self.markers, self.name)
 
     def with_edits(self, *edits: Edit) -> Self:
         """Return the trial with further edits; ``stances`` applies them or raises."""
@@ -356,14 +356,14 @@ def file_checksum(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def _named(kind: str, names: tuple[str, ...], known: Mapping[str, _T], where: str) -> _T:
+def _find_name(kind: str, names: tuple[str, ...], known: Mapping[str, _T], where: str) -> _T:
     folded: dict[str, _T] = {}
     for name in names:
         if name in known:
             return known[name]
-        folded = folded or {_folded(key): value for key, value in reversed(list(known.items()))}
-        if _folded(name) in folded:
-            return folded[_folded(name)]
+        folded = folded or {_fold_name(key): value for key, value in reversed(list(known.items()))}
+        if _fold_name(name) in folded:
+            return folded[_fold_name(name)]
     listed = list(known)
     shown = ", ".join(listed[:12]) + (f" and {len(listed) - 12} more" if len(listed) > 12 else "")
     raise DataError(
@@ -375,7 +375,7 @@ def _named(kind: str, names: tuple[str, ...], known: Mapping[str, _T], where: st
     )
 
 
-def _folded(name: str) -> str:
+def _fold_name(name: str) -> str:
     return "".join(letter for letter in name.casefold() if letter.isalnum())
 
 

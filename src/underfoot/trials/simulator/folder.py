@@ -196,7 +196,7 @@ def simulated_folder(
     if kind == "tester":
         count = max(count, 2)
     files = maker(count, np.random.default_rng(seed))
-    return _written(out, files, count * each or len(ACTIVITIES), profile, progress)
+    return _write_study(out, files, count * each or len(ACTIVITIES), profile, progress)
 
 
 def simulated_study(
@@ -209,10 +209,10 @@ def simulated_study(
     plate.
     """
     total = persons * len(SHOES) * trials
-    return _written(out, _walks(persons, trials, seed), total, _WALKWAY, progress)
+    return _write_study(out, _walks(persons, trials, seed), total, _WALKWAY, progress)
 
 
-def _written(
+def _write_study(
     out: Path, files: Iterable[_File], total: int, profile: str, progress: Progress
 ) -> list[Path]:
     out.mkdir(parents=True, exist_ok=True)

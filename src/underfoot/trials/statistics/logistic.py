@@ -230,7 +230,7 @@ def logistic_regression(
 
     Source: D. Firth, Biometrika 80 (1993) 27; G. Heinze, M. Schemper, Stat. Med. 21 (2002) 2409.
     """
-    y, matrix, names = _checked(outcome, predictors)
+    y, matrix, names = _check_outcome(outcome, predictors)
     firth = method == "firth"
     if method not in ("maximum_likelihood", "firth"):
         raise unknown_name("method", method, tuple(METHODS)[:2], where="logistic regression")
@@ -254,7 +254,7 @@ def logistic_regression(
                 count=len(predictors),
             )
         )
-    centred, scale, back = _scaled(matrix)
+    centred, scale, back = _scale_matrix(matrix)
     start = np.zeros(len(names))
     mean = float(y.mean())
     start[0] = np.log(mean / (1.0 - mean))
@@ -289,7 +289,7 @@ def logistic_regression(
     return LogisticFit(method, tuple(coefficients), covariance, *likelihoods, *counted)
 
 
-def _scaled(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _scale_matrix(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the centred and scaled matrix, the scales, and what brings coefficients back."""
     scale = np.concatenate(([1.0], matrix[:, 1:].std(axis=0)))
     centre = np.concatenate(([0.0], matrix[:, 1:].mean(axis=0)))
@@ -372,7 +372,7 @@ def _profile(
     return ends[0], ends[1], p, text
 
 
-def _checked(
+def _check_outcome(
     outcome: ArrayLike, predictors: Mapping[str, ArrayLike]
 ) -> tuple[np.ndarray, np.ndarray, list[str]]:
     where = "logistic regression"
@@ -444,7 +444,7 @@ def clustered_logistic(
     """
     from scipy.stats import t as student
 
-    y, matrix, names = _checked(outcome, predictors)
+    y, matrix, names = _check_outcome(outcome, predictors)
     labels = [str(c) for c in cluster]
     if len(labels) != len(y):
         raise DataError("one cluster label per row is needed", where="cluster")
@@ -459,9 +459,9 @@ def clustered_logistic(
         raise DataError(text, where="cluster", allowed="more clusters")
     # Refuses separated data with its own message, and starts the iteration at its answer.
     start = logistic_regression(y.astype(int), dict(predictors)).estimates
-    centred, _, back = _scaled(matrix)
+    centred, _, back = _scale_matrix(matrix)
     groups = np.array([order[label] for label in labels])
-    params, dependence = _estimated(y, centred, groups, np.linalg.solve(back, start))
+    params, dependence = _estimate_equations(y, centred, groups, np.linalg.solve(back, start))
     clusters = _cluster_scores(y, centred, groups, centred @ params, dependence)
     corrected = back @ sandwich(*clusters, 0.5) @ back.T
     estimates, errors = back @ params, np.sqrt(np.diag(corrected))
@@ -475,7 +475,7 @@ def clustered_logistic(
     return ClusteredFit("clustered", coefficients, corrected, dependence, len(order), len(y))
 
 
-def _estimated(
+def _estimate_equations(
     y: np.ndarray, matrix: np.ndarray, groups: np.ndarray, start: np.ndarray
 ) -> tuple[np.ndarray, float]:
     """Coefficients (p,) of the estimating equations and the correlation within clusters."""
@@ -527,7 +527,7 @@ def _flipped_p(y: np.ndarray, matrix: np.ndarray, groups: np.ndarray, column: in
     rest = np.arange(matrix.shape[1]) != column
     mean = float(y.mean())
     start = np.where(np.flatnonzero(rest) == 0, np.log(mean / (1.0 - mean)), 0.0)
-    params, dependence = _estimated(y, matrix[:, rest], groups, start)
+    params, dependence = _estimate_equations(y, matrix[:, rest], groups, start)
     scores, curvatures = _cluster_scores(y, matrix, groups, matrix[:, rest] @ params, dependence)
     whole = curvatures.sum(axis=0)
     nuisance = np.linalg.solve(whole[np.ix_(rest, rest)], whole[rest, column])

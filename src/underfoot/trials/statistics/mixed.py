@@ -157,7 +157,9 @@ def mixed_model(
     )
     shared |= {tuple(factor for factor in means.factors if factor in within): None}
     groups = {
-        ":".join(("person", *own)): _numbered(means.person, *(means.factors[part] for part in own))
+        ":".join(("person", *own)): _number_combinations(
+            means.person, *(means.factors[part] for part in own)
+        )
         for own in sorted(shared, key=len)
     }
     try:
@@ -175,7 +177,7 @@ def mixed_model(
     )  # fmt: skip
 
 
-def _numbered(*columns: Sequence[str]) -> np.ndarray:
+def _number_combinations(*columns: Sequence[str]) -> np.ndarray:
     """Return a number for each combination that stands in the columns, shape (n,)."""
     rows = list(zip(*columns, strict=True))
     order = {row: i for i, row in enumerate(dict.fromkeys(rows))}

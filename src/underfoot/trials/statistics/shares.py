@@ -92,7 +92,7 @@ def share_difference(
             Message("{count} against {other} trials can't be paired", count=len(a), other=len(b)),
             where="shares",
         )
-    counted = _counted(a, first_person), _counted(b, second_person)
+    counted = _effective_count(a, first_person), _effective_count(b, second_person)
     apart = (int(np.sum(a > b)), int(np.sum(a < b))) if paired else None
     difference = float(a.mean() - b.mean())
     told = ShareDifference(
@@ -126,7 +126,7 @@ def paired_score(first: int, second: int, n: int, difference: float) -> float:
     return float(off / np.sqrt(variance)) if variance > 0 else float(np.copysign(np.inf, off))
 
 
-def _counted(values: np.ndarray, persons: Sequence[object]) -> float:
+def _effective_count(values: np.ndarray, persons: Sequence[object]) -> float:
     """Return the number of independent trials that tell as much of the share."""
     n, share = len(values), float(values.mean())
     names = {str(person): i for i, person in enumerate(dict.fromkeys(map(str, persons)))}

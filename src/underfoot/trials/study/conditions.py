@@ -189,7 +189,12 @@ def named_file(name: str, labels: Sequence[str], below: str = ".") -> str | None
         if same:
             break
     if len(same) > 1:
-        text = f'"{name}" names {len(same)} files: {", ".join(same[:4])}'
+        text = Message(
+            '"{name}" names {count} files: {same}',
+            name=name,
+            count=len(same),
+            same=", ".join(same[:4]),
+        )
         raise InputError(text, where="file", remedy="Write the folder too")
     return same[0] if same else None
 
@@ -717,7 +722,7 @@ def _refuse_other_unit(unit: str, si: str, where: str) -> None:
     try:
         units.to_si(f"1 {plain}", si, where=where)
     except InputError as error:
-        allowed = "a number" if si == "1" else f"a unit of {si}"
+        allowed = "a number" if si == "1" else Message("a unit of {si}", si=si)
         raise InputError(
             Message('is in "{unit}"', unit=unit), where=where, allowed=allowed
         ) from error

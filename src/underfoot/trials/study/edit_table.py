@@ -92,7 +92,7 @@ def _time(text: str, unit: str, where: str) -> float:
         return to_si(text, "s", where=where, usual=unit)
     except InputError as error:
         allowed = 'a time with its unit, as "3.06 s"; a step also by its number'
-        what = f'"{text}" is no time: {error.what}'
+        what = Message('"{text}" is no time: {what}', text=text, what=error.what)
         raise EditError(what, where=where, allowed=allowed) from error
 
 
@@ -175,4 +175,4 @@ def _event(what: str, step: StepResult) -> str:
         return f"{step.contact if what == 'contact' else step.toe_off:.4f} s"
     if what == "side":
         return step.side
-    return f"no step: {step.reason}" if step.reason else "step"
+    return Message("no step: {reason}", reason=step.reason) if step.reason else "step"

@@ -39,7 +39,9 @@ def c3d_with_events(trial: Trial, stances: Sequence[Stance]) -> bytes:
     for number, plate in enumerate(plates, start=1):
         corners = plate.corners
         axes = np.eye(3) if corners is None else plate_axes(corners)
-        force, moment = (_sampled(plate, v, samples) @ axes for v in (plate.force, _moment(plate)))
+        force, moment = (
+            _sample_plate(plate, v, samples) @ axes for v in (plate.force, _moment(plate))
+        )
         names = [f"{letter}{number}" for letter in ("Fx", "Fy", "Fz", "Mx", "My", "Mz")]
         for i in range(3):
             analog[names[i]] = (force[:, i], "N")
@@ -159,6 +161,6 @@ def _moment(plate: Plate) -> np.ndarray:
     return np.cross(lever, plate.force)
 
 
-def _sampled(plate: Plate, values: np.ndarray, samples: np.ndarray) -> np.ndarray:
+def _sample_plate(plate: Plate, values: np.ndarray, samples: np.ndarray) -> np.ndarray:
     filled = np.nan_to_num(values)
     return np.column_stack([np.interp(samples, plate.time, filled[:, i]) for i in range(3)])

@@ -174,7 +174,7 @@ class FileResult:
         readings = _with_tuples(data["sample"])
         sample = Sample(**{**readings, "boards": tuple(map(tuple, readings["boards"]))})
         rows = {"numbers": numbers, "edits": edits, "steps": steps, "sample": sample}
-        return cls(**{**_with_tuples(data), **rows, "curves": _packed(data["curves"])})
+        return cls(**{**_with_tuples(data), **rows, "curves": _pack_curves(data["curves"])})
 
 
 def parts(row: FileResult | LoggedEdit | Measurement | Sample | StepResult) -> dict[str, Any]:
@@ -227,9 +227,9 @@ class FileResultDraft:
         for key, values in series.items():
             if isinstance(values, np.ndarray):
                 step = max(1, math.ceil(len(values) / _POINTS))
-                out[key] = array("d", _rounded(np.asarray(values, dtype=float)[::step]))
+                out[key] = array("d", _round_values(np.asarray(values, dtype=float)[::step]))
             elif isinstance(values, float):
-                out[key] = float(_rounded(np.array(values))) if math.isfinite(values) else None
+                out[key] = float(_round_values(np.array(values))) if math.isfinite(values) else None
             else:
                 out[key] = values
         self.curves.setdefault(name, []).append(out)
@@ -258,7 +258,7 @@ class FileResultDraft:
             reasons=tuple(dict.fromkeys([*self.refusals, *self.cautions])),
             kinds=tuple(dict.fromkeys(kinds)),
             numbers=tuple(self.numbers),
-            curves=_packed(self.curves),
+            curves=_pack_curves(self.curves),
             conditions=self.conditions,
             edits=tuple(self.edits),
             steps=tuple(self.steps),
@@ -282,7 +282,7 @@ def refer_to(record: TesterCalibration | None, draft: FileResultDraft) -> None:
         (draft.refusals if flag.name == FAILED else draft.cautions).append(flag.message)
 
 
-def _rounded(values: np.ndarray) -> np.ndarray:
+def _round_values(values: np.ndarray) -> np.ndarray:
     """Seven digits are more than any instrument gives."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         scale = 10.0 ** (6.0 - np.floor(np.log10(np.abs(values))))
@@ -290,12 +290,12 @@ def _rounded(values: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(rounded), rounded, np.where(values == 0.0, 0.0, np.nan))
 
 
-def _packed(value: Any) -> Any:
+def _pack_curves(value: Any) -> Any:
     """Return stored curves with their lists of numbers as arrays: a quarter of the memory."""
     if isinstance(value, dict):
-        return {key: _packed(one) for key, one in value.items()}
+        return {key: _pack_curves(one) for key, one in value.items()}
     if not isinstance(value, list):
         return value
     if value and all(one is None or type(one) is float for one in value):
         return array("d", [math.nan if one is None else one for one in value])
-    return [_packed(one) for one in value]
+    return [_pack_curves(one) for one in value]

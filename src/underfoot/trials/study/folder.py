@@ -163,11 +163,11 @@ def _jobs(
 def _run(jobs: list[tuple[Any, ...]], processes: int, progress: Progress) -> list[list[FileResult]]:
     count = processes if len(jobs) >= 4 else 1  # a process takes longer to start than a file
     stage = "analysing files"
-    answers = in_processes(_job, jobs, count, progress=progress, stage=stage, died=_died)
+    answers = in_processes(_job, jobs, count, progress=progress, stage=stage, died=_death_result)
     return [results for _, results in sorted(answers, key=lambda answer: answer[0])]
 
 
-def _died(job: tuple[Any, ...]) -> list[FileResult]:
+def _death_result(job: tuple[Any, ...]) -> list[FileResult]:
     return [FileResult(job[0], "", REFUSED, (_DIED,))]
 
 
@@ -176,20 +176,20 @@ def _job(job: tuple[Any, ...]) -> list[FileResult]:
     try:
         checksums = [file_checksum(path) for path in files]
     except OSError as error:
-        reason = f"can't be read: {error.strerror or error}"
+        reason = Message("can't be read: {strerror}", strerror=error.strerror or error)
         return [FileResult(name, "", REFUSED, (reason,), conditions=noted)]
     key = content_hash(
         base, checksums, name, [p.name for p in files], noted, list(map(repr, edits))
     )
     if store is None:
-        return _analysed(checksums[0], *job[:6])
+        return _analyse_file(checksums[0], *job[:6])
     path = store / f"{key}.json"
     try:
         kept = json.loads(path.read_text(encoding="utf-8"))
         return [FileResult.from_dict(from_stored(one)) for one in kept]
     except (OSError, ValueError, TypeError, KeyError):
         pass
-    results = _analysed(checksums[0], *job[:6])
+    results = _analyse_file(checksums[0], *job[:6])
     store.mkdir(parents=True, exist_ok=True)
     handle, part = tempfile.mkstemp(dir=store, suffix=".part")
     with os.fdopen(handle, "w", encoding="utf-8") as stream:
@@ -201,7 +201,7 @@ def _job(job: tuple[Any, ...]) -> list[FileResult]:
     return results
 
 
-def _analysed(
+def _analyse_file(
     checksum: str,
     name: str,
     files: tuple[Path, ...],
@@ -295,7 +295,7 @@ def _check_whole_edits(edits: list[Edit], trials: int, protocol: Protocol) -> No
             )
             raise EditError(text, where=edit.where, allowed="exclude")
         if edit.step not in range(1, trials + 1):
-            text = f"there is no {edit.step_words}"
+            text = Message("there is no {step_words}", step_words=edit.step_words)
             raise EditError(text, where=edit.where, allowed=f"1 to {trials}")
         if any(edit.step == other.step for other in edits[:i]):
             raise EditError(

@@ -182,7 +182,12 @@ def _table_results(
     top = LARGEST[quantity]
     wrong = np.flatnonzero((values < (-0.1 * top)) | (values > top))
     if len(wrong):
-        text = f"line {lines[wrong[0]]}: {column} is {values[wrong[0]]:g}"
+        text = Message(
+            "line {line}: {column} is {value:g}",
+            line=lines[wrong[0]],
+            column=column,
+            value=values[wrong[0]],
+        )
         raise DataError(text, where=name, allowed=f"0 to {top:g}")
     runs = next((cells[c] for c in cells if c.casefold() in _RUN), [""] * len(values))
     texts = {
@@ -541,7 +546,9 @@ def _check_numbers(
     """Refuse a column with a filled cell that holds no number."""
     bad = first_text(cells, read)
     if bad is not None:
-        text = f'line {lines[bad]}: {head} is "{cells[bad]}"'
+        text = Message(
+            'line {line}: {head} is "{cell}"', line=lines[bad], head=head, cell=cells[bad]
+        )
         raise DataError(text, where=where, allowed="a number alone, or nothing")
 
 

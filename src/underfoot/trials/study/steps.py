@@ -321,7 +321,7 @@ class _Walk:
 
 
 def _gait(walk: _Walk) -> None:
-    if not _required(walk, walk.stances):
+    if not _add_rcof(walk, walk.stances):
         reasons = dict.fromkeys(step.reason for step in walk.draft.steps if step.reason)
         why = [*reasons] or [Message("no peak found")]
         walk.draft.refusals.append(Remark("no clean step", "{reasons:; }", reasons=why))
@@ -335,7 +335,7 @@ def _human_slip(walk: _Walk) -> None:
         raise DataError(
             Message("no contact with the slippery plate ({name})", name=name), where=walk.trial.name
         )
-    _required(walk, [s for s in walk.stances if s not in on_plate])
+    _add_rcof(walk, [s for s in walk.stances if s not in on_plate])
     definition = slip_definition(protocol)
     standard = OutcomeLimits()
     limits = OutcomeLimits(
@@ -452,7 +452,7 @@ def _sensors(walk: _Walk, slip: Slip, walking: np.ndarray) -> None:
         draft.curve("track", along=track[:, 0], across=track[:, 1], pulses=pulses)
 
 
-def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
+def _add_rcof(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
     """Add the RCOF of the chosen contacts."""
     draft, axes = walk.draft, walk.axes
     definition = rcof_definition(walk.protocol)

@@ -85,21 +85,23 @@ def guarded_files(
     for i, results in enumerate(recordings):
         if results and results[0].checksum:
             bytes_of[results[0].checksum].append(i)
-        values = [v for one in results for v in one.facts.values()]
-        values += [m.value for one in results for m in one.measurements]
-        values += [getattr(step, key) for one in results for step in one.steps for key in _STEP]
+        values = [v for result in results for v in result.facts.values()]
+        values += [m.value for result in results for m in result.measurements]
+        values += [
+            getattr(step, key) for result in results for step in result.steps for key in _STEP
+        ]
         numbers = tuple(float(f"{v:.6g}") for v in values if isinstance(v, float) and v % 1.0)
         if len(numbers) >= 3:
             numbers_of[numbers].append(i)
     equal = [*bytes_of.values(), *numbers_of.values()]
     doubts: list[Doubt] = []
     refused: dict[int, tuple[Message, Message]] = {}
-    for members in _joined([*equal, *_with_same_steps(recordings)], len(recordings)):
+    for members in _join_groups([*equal, *_with_same_steps(recordings)], len(recordings)):
         alike = ("bytes", bytes_of), ("numbers", numbers_of)
         shared = next((name for name, kind in alike if members in kind.values()), "steps")
         what = Message("the same {shared}", shared=shared)
         names = tuple(recordings[i][0].file for i in members)
-        noted = [_noted(recordings[i][0]) for i in members]
+        noted = [_noted_conditions(recordings[i][0]) for i in members]
         same = all(one == noted[0] for one in noted)
         words = Message("{what} as {file}, which counts", what=what, file=names[0])
         if not same:
@@ -121,16 +123,21 @@ def guarded_files(
             ),
         )
     files = [
-        replace(one, verdict=REFUSED, reasons=(refused[i][0], *one.reasons), kinds=(refused[i][1],))
+        replace(
+            result,
+            verdict=REFUSED,
+            reasons=(refused[i][0], *result.reasons),
+            kinds=(refused[i][1],),
+        )
         if i in refused
-        else one
+        else result
         for i, results in enumerate(recordings)
-        for one in results
+        for result in results
     ]
     return sorted(files, key=lambda one: one.file), doubts
 
 
-def _joined(groups: Iterable[Sequence[int]], count: int) -> list[list[int]]:
+def _join_groups(groups: Iterable[Sequence[int]], count: int) -> list[list[int]]:
     """Return the sets of several of ``count`` recordings that hang together by ``groups``."""
     label = list(range(count))
     for first, *others in (group for group in groups if len(group) > 1):
@@ -183,7 +190,7 @@ def study_doubts(files: Sequence[FileResult], protocol: Protocol) -> list[Doubt]
     doubts = [*_incomplete(usable), *_numbers_lacking(usable), *_near_names(usable, person)]
     doubts += _words_exchanged(usable)
     if not tables:
-        doubts += [*_single_levels(usable, person), *_confounded(usable, person)]
+        doubts += [*_single_levels(usable, person), *_confounded_factors(usable, person)]
     if any(result.steps for result in usable):
         doubts += [*_circumstances(usable, person), *_plates_apart(usable)]
     if person:
@@ -209,7 +216,7 @@ def doubt_table(doubts: Sequence[Doubt]) -> TrialTable | None:
     return TrialTable.of("doubts", "Read this first: doubts about the study's files", heads, rows)
 
 
-def _noted(result: FileResult) -> dict[str, Any]:
+def _noted_conditions(result: FileResult) -> dict[str, Any]:
     return {k: v for k, v in result.conditions.items() if k not in NUMBERS}
 
 
@@ -394,7 +401,7 @@ def _same_in_another_order(first: str, second: str) -> bool:
     return False
 
 
-def _compared(files: Sequence[FileResult], person: str) -> dict[str, list[FileResult]]:
+def _compared_conditions(files: Sequence[FileResult], person: str) -> dict[str, list[FileResult]]:
     """Return the conditions in words that a study can compare, with the files that have them."""
     return {
         key: having
@@ -408,8 +415,8 @@ def _compared(files: Sequence[FileResult], person: str) -> dict[str, list[FileRe
     }
 
 
-def _confounded(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
-    having = _compared(files, person)
+def _confounded_factors(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    having = _compared_conditions(files, person)
     every = [key for key, results in having.items() if len(results) == len(files)]
     factors = {key: [str(file.conditions[key]) for file in files] for key in every}
     if len(factors) > 1:
@@ -420,7 +427,7 @@ def _confounded(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
 
 def _circumstances(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """A condition that was walked faster or slower than another, or always early or late."""
-    for key, having in _compared(files, person).items():
+    for key, having in _compared_conditions(files, person).items():
         if key in ORDERS:
             continue
         for what, means in gone_with(having, key, person).items():
@@ -533,7 +540,7 @@ def _one_body(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
 
 def _levels_exchanged(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """A person whose difference of two levels is that of all others with its sign turned."""
-    for key, having in _compared(files, person).items():
+    for key, having in _compared_conditions(files, person).items():
         values = [
             (str(o.conditions[person]), str(o.conditions[key]), np.log(o.main["rcof"]))
             for o in having
@@ -568,7 +575,7 @@ def _levels_exchanged(files: Sequence[FileResult], person: str) -> Iterator[Doub
 
 def _trials_mislabelled(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """A trial far from its person's others with the same label, and as those with another."""
-    for key, having in _compared(files, person).items():
+    for key, having in _compared_conditions(files, person).items():
         having = [o for o in having if person in o.conditions and o.main.get("rcof", 0.0) > 0.0]
         cells = group_files(having, (person, key))
         left = [

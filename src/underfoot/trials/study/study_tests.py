@@ -85,9 +85,9 @@ def comparison_findings(
     repeated = [*rank_findings(response, values, factors, persons), *repeated]
     warning = statistics.independence_warning(persons)
     name = quantity_name(response)
-    findings, model = _mixed(response, values, factors, persons) if warning else ([], None)
+    findings, model = _mixed_model(response, values, factors, persons) if warning else ([], None)
     try:
-        table = _crossed(
+        table = _crossed_model(
             factors,
             lambda terms: statistics.analysis_of_variance(values, factors, terms, name=name),
         )
@@ -117,7 +117,7 @@ def _with_left_out(
     return replace(first, table=table, cautions=(*doubtful, *first.cautions))
 
 
-def _crossed(
+def _crossed_model(
     factors: Mapping[str, Sequence[str]], fit: Callable[[tuple[str, ...] | None], _Fit]
 ) -> _Fit:
     """Return a crossed model; without the interactions that there are too few values for."""
@@ -129,7 +129,7 @@ def _crossed(
     return fit(tuple(factors))
 
 
-def _mixed(
+def _mixed_model(
     response: str,
     values: Sequence[float],
     factors: Mapping[str, Sequence[str]],
@@ -141,7 +141,7 @@ def _mixed(
     )
     key = f"mixed_{response}"
     try:
-        model = _crossed(
+        model = _crossed_model(
             factors,
             lambda terms: statistics.mixed_model(values, factors, persons, terms, name=name),
         )
@@ -401,7 +401,7 @@ def _t_tests(
             continue
         persons = persons_of(having, person)
         if statistics.independence_warning(persons):
-            mixed, model = _mixed(name, values, {key: group}, persons)
+            mixed, model = _mixed_model(name, values, {key: group}, persons)
             tukey = _tukey(name, model, values, {key: group}, persons) if model else []
             findings += mixed + tukey
             continue

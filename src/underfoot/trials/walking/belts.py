@@ -90,7 +90,7 @@ def belts_of(
             if not 0.3 < (stop - start) / plate.rate < 2.0 or np.linalg.norm(swing) < 10.0:
                 continue
             swing /= np.linalg.norm(swing)
-            velocity, error = _carried(contact, feet, swing)
+            velocity, error = _carried_velocity(contact, feet, swing)
             if velocity is not None:
                 seen.append((plate.start + start / plate.rate, velocity, swing))
                 straightness.append(error)
@@ -106,7 +106,7 @@ def belts_of(
     return belts
 
 
-def _carried(
+def _carried_velocity(
     contact: Contact, feet: Sequence[Marker], swing: np.ndarray
 ) -> tuple[np.ndarray | None, float]:
     """Velocity (3,) of the foot that stands on a plate and its uncertainty (m/s)."""

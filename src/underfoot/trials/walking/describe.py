@@ -68,7 +68,15 @@ class Description:
         lines = [
             f"{trial.name}: {trial.source}, sha256 {trial.checksum[:12]}",
             *(f"  {key}: {value}" for key, value in list(trial.settings.items())[:_SHOWN]),
-            *("", "Axes", f"  vertical {axis_name(axes.up)} ({axes.up_from})"),
+            *(
+                "",
+                "Axes",
+                Message(
+                    "  vertical {axis_name} ({up_from})",
+                    axis_name=axis_name(axes.up),
+                    up_from=axes.up_from,
+                ),
+            ),
             f"  walking  {axis_name(axes.walking)} ({axes.walking_from})",
             f"  surface  {axes.ramp.description}",
             *(*self._plates(), *self._markers(), *self._channels()),
@@ -90,7 +98,7 @@ class Description:
                 continue
             seconds = len(plate.force) / plate.rate
             lines.append(f"  {plate.name}: {plate.kind}, {plate.rate:g} Hz, {seconds:.2f} s")
-            lines.append(f"    baseline {_baseline(plate)}")
+            lines.append(Message("    baseline {baseline}", baseline=_baseline(plate)))
             lines += [f"    ! {note}" for note in (*plate.flags, *plate.notes)]
         return lines
 
@@ -99,7 +107,10 @@ class Description:
         if not markers:
             return ["", "Markers", "  none"]
         first = next(iter(markers.values()))
-        lines = ["", f"Markers: {len(markers)} at {first.rate:g} Hz"]
+        lines = [
+            "",
+            Message("Markers: {count} at {rate:g} Hz", count=len(markers), rate=first.rate),
+        ]
         lines.append("  " + _some(list(markers)))
         for side, names in self.heels.items():
             for name in names:

@@ -85,7 +85,7 @@ def edited_contacts(
     contacts = list(detected)
     seen: dict[tuple[int, str], Edit] = {}
     for edit in edits:
-        at = _named(contacts, edit)
+        at = _find_contact(contacts, edit)
         number = contacts[at].number
         for (other, what), earlier in seen.items():
             if other == number and (what == edit.what or "exclude" in (what, edit.what)):
@@ -103,11 +103,11 @@ def edited_contacts(
         if edit.what == "plate":
             contacts = _on_plate(contacts, at, edit)
         else:
-            contacts[at] = _changed(contacts[at], edit, plates[contacts[at].plate], up)
+            contacts[at] = _apply_edit(contacts[at], edit, plates[contacts[at].plate], up)
     return contacts
 
 
-def _named(contacts: Sequence[Stance], edit: Edit) -> int:
+def _find_contact(contacts: Sequence[Stance], edit: Edit) -> int:
     """Index of the contact that an edit names by number or by a time."""
     allowed = "; ".join(f"{s.number} at {s.contact:.3f} s on {s.plate}" for s in contacts[:20])
     allowed = allowed or "the recording has no contact with a plate"
@@ -132,7 +132,7 @@ def _named(contacts: Sequence[Stance], edit: Edit) -> int:
     return min(near)[1]
 
 
-def _changed(stance: Stance, edit: Edit, plate: Plate, up: np.ndarray) -> Stance:
+def _apply_edit(stance: Stance, edit: Edit, plate: Plate, up: np.ndarray) -> Stance:
     by_hand = (*stance.by_hand, edit.what)
     if edit.what == "exclude":
         return replace(

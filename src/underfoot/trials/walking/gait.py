@@ -229,7 +229,7 @@ def required_friction(
     passed = np.flatnonzero(normal > gate)
     if not len(passed):
         return without(Message("the normal force never passes {gate:.0f} N", gate=gate))
-    at = _peak(definition, ratio, _allowed(definition, normal, along, gate))
+    at = _peak(definition, ratio, _allowed_samples(definition, normal, along, gate))
     if at is None:
         text = Message("no {peak} while the gate is passed", peak=PEAKS[definition.peak])
         return without(text)
@@ -254,7 +254,7 @@ def required_friction(
         filtering = [value]
         for other in definition.other_filters:
             load, curve, push = _curves(step.filtered_force[other], step.surface, definition.shear)
-            top = _peak(definition, curve, _allowed(definition, load, push, gate))
+            top = _peak(definition, curve, _allowed_samples(definition, load, push, gate))
             if top is not None:
                 filtering.append(float(curve[top]))
         baseline = baseline_error(levels, step.surface[0], float(normal[at]), value)
@@ -342,7 +342,7 @@ def _uncertainty(
     return math.hypot(baseline, filtering, plate), parts
 
 
-def _allowed(
+def _allowed_samples(
     definition: RcofDefinition, normal: np.ndarray, along: np.ndarray, gate: float
 ) -> np.ndarray:
     allowed = normal > gate

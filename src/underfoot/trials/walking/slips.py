@@ -148,7 +148,7 @@ def _motion(marker: Marker, up: tuple[float, ...], definition: SlipDefinition) -
     for start, stop in runs(np.asarray(np.isfinite(path).all(axis=1))):
         if stop - start < shortest:
             continue
-        smooth, velocity[start:stop] = _smoothed(path[start:stop], marker.rate, definition)
+        smooth, velocity[start:stop] = _smooth_path(path[start:stop], marker.rate, definition)
         position[start:stop] = smooth
         # Differences of neighbours see the noise and not the motion.
         residuals.append(np.diff(path[start:stop] - smooth, axis=0)[~filled[start + 1 : stop]])
@@ -199,7 +199,7 @@ def _landings(
     return tuple(float(motion.time[i]) for i in found)
 
 
-def _smoothed(
+def _smooth_path(
     path: np.ndarray, rate: float, definition: SlipDefinition
 ) -> tuple[np.ndarray, np.ndarray]:
     if definition.derivative == "differences":
@@ -228,7 +228,7 @@ def _noise_gains(rate: float, definition: SlipDefinition) -> tuple[float, float]
     """Standard deviation of speed (1/s) and acceleration (1/s^2) for unit white noise an axis."""
     impulse = np.zeros(max(201, 4 * round(rate / definition.filter.cutoff) + 1))
     impulse[len(impulse) // 2] = 1.0
-    speed = _smoothed(impulse, rate, definition)[1]
+    speed = _smooth_path(impulse, rate, definition)[1]
     return float(np.linalg.norm(speed)), float(np.linalg.norm(np.gradient(speed, 1 / rate)))
 
 
