@@ -129,7 +129,11 @@ def test_slips_near_their_limit_are_counted():
     assert "within" not in said(0.051, -0.051)
     assert said(0.3, 0.3, -0.3, rcof=0.2).endswith("; required friction 0.20 to 0.20")
     assert str(report._slips([file("a")])).startswith("0 slips in 0 trials")
-    assert [str(report._counted(n, "files")) for n in (0, 1, 2)] == ["0 files", "1 file", "2 files"]
+    assert [str(report._count_text(n, "files")) for n in (0, 1, 2)] == [
+        "0 files",
+        "1 file",
+        "2 files",
+    ]
     assert report._places(SimpleNamespace(decimals=None)) == 3
     assert report._places(SimpleNamespace(decimals=2)) == 2
 
