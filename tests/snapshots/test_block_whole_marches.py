@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from block_loops import written_loops
+from block_loops import plain, written_loops
 from snapshot import held, refusal
 from underfoot.block import assembly
 from underfoot.block._kernels import names as at
+from underfoot.block._kernels.energy import element_energies
 from underfoot.block.assembly import ExplicitSettings, assemble_march
 from underfoot.block.explicit import _breaches, explicit_sliding
 from underfoot.block.inputs import MicroBlock, MicroLoading, MicroMaterial, MicroSurface
@@ -290,3 +291,17 @@ def test_rows_become_ledgers_and_means():
     assert means.real_contact_fraction_corrected == pytest.approx(2 / 6)
     rows[:, column["edges"]] = 4.0
     assert np.isnan(averages(rows, 1.0, 6.0).real_contact_fraction_corrected)
+
+
+def test_an_element_turned_inside_out_has_the_least_volume_of_all():
+    made = assemble_march(SIDELESS, MicroSurface(), ELASTIC, PRESSED, FEW)
+    size = made.nodes[0].size
+    for squeeze, least in ((-0.5, 0.5), (-2.0, -1.0), (-1.0, -1.0)):
+        u = np.zeros((3, size // 3))
+        u[2, : made.mesh.nodes.shape[1]] = squeeze * made.mesh.nodes[2]
+        state = np.zeros(at.STATE_SIZE)
+        plain(element_energies)(
+            u.ravel(), made.arrays, made.constants, made.history, made.control, made.terms, False,
+            state,
+        )  # fmt: skip
+        assert state[at.LEAST_J] == pytest.approx(least)
