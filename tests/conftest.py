@@ -5,6 +5,7 @@ import hashlib
 import os
 import shutil
 import signal
+import sys
 import time
 
 import pytest
@@ -44,13 +45,29 @@ def pytest_collection_modifyitems(config, items):
         items.sort(key=lambda item: hashlib.sha256(f"{seed} {item.path.name}".encode()).digest())
 
 
-def pytest_collection_finish():
-    """All tests and their modules stay to the end: no collection of garbage walks through them.
+def pytest_configure():
+    """statsmodels collects garbage at each adjustment of p: half a second among all tests."""
+    whole = gc.collect
 
-    statsmodels asks for one at each adjustment of p, which took half a second of CPU.
-    """
+    def collect(generation=2):
+        asks = sys._getframe(1).f_globals.get("__name__", "")
+        return 0 if asks.startswith("statsmodels.") else whole(generation)
+
+    gc.collect = collect
+
+
+def pytest_collection_finish():
+    """All tests and their modules stay to the end: no collection of garbage walks through them."""
     gc.collect()
     gc.freeze()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item, nextitem):
+    """What a file leaves stays too: NiceGUI collects garbage twice for each test of a page."""
+    if nextitem is not None and nextitem.path != item.path:
+        gc.collect()
+        gc.freeze()
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -6,7 +6,6 @@ import importlib
 import os
 import pickle
 import shutil
-import subprocess
 import sys
 import textwrap
 import threading
@@ -16,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from commands import called
 from underfoot.case import Case
 from underfoot.case.section import Option
 from underfoot.compute.prepare import case_and_objects, case_hash
@@ -27,7 +27,6 @@ from underfoot.explore import sweep
 from underfoot.friction import ConstantLaw, packaged_pair_draws
 from underfoot.rough_contact import ExponentialLaw
 
-COMMAND = "from underfoot.cli import main; main()"
 PARTS = {
     "shoe": "work_shoe_half_tread",
     "floor": "vinyl_g4",
@@ -193,21 +192,7 @@ def test_a_grid_check_is_saved_under_the_hash_of_its_case(smooth, tmp_path):
     checked = smooth.replace("numerics.grid_check", True)
     file = tmp_path / "case.toml"
     checked.save(file)
-    done = subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            COMMAND,
-            "run",
-            str(file),
-            "--no-advice",
-            "--out",
-            str(tmp_path / "out"),
-        ],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = called("run", file, "--no-advice", "--out", tmp_path / "out")
     assert done.returncode == 0, done.stderr
     result = Result.load(tmp_path / "out")
     assert result.provenance.case_hash == Case.load(file).hash
