@@ -362,8 +362,8 @@ def test_a_lay_is_named_and_numbers_are_across_it(tmp_path, degrees, sides):
         (0, 90, 0.5, UNEVEN),
         (20, 110, 0.5, UNEVEN),
         (30, 150, 1.0, UNEVEN),
-        (45, 100, 0.5, EVEN),
-        (45, 100, 1.0, UNEVEN),
+        (45, 100, 0.5, UNEVEN),
+        (45, 100, 1.0, EVEN),
     ],
 )
 def test_crossed_lays_are_named_and_both_count(tmp_path, first, second, ratio, sides):
