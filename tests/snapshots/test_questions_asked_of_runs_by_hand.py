@@ -384,6 +384,7 @@ def test_outcomes_are_kept(file_regression, monkeypatch, tmp_path):
         file_regression,
         {
             "cof": [one.number("cof") for one in found], "status": [one.status for one in found],
+            "names": [[one.name, one.case_hash == one.name] for one in found[:2]],
             "message": found[1].remedy, "maps": [sorted(one.maps) for one in found],
             "same": found[0] is found[2], "asked": asked, "heard": heard,
             "again": [one.number("cof") for one in again],
