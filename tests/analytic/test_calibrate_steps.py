@@ -17,9 +17,11 @@ from underfoot.calibrate.pair_readings import (
     read_pair_readings,
 )
 from underfoot.calibrate.stribeck_curve import StribeckCurve
+from underfoot.calibrate.trial_laws import stribeck_law_from_fit
 from underfoot.case import load
-from underfoot.core import InputError
+from underfoot.core import DataError, InputError
 from underfoot.friction import packaged_pair_draws
+from underfoot.trials.machines.stribeck_fit import stribeck_fit
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TRUTH = 0.4, 0.3, 0.1
@@ -231,3 +233,13 @@ def test_each_reading_takes_its_part_of_the_work_one_after_the_other(monkeypatch
         progress=cast(Any, lambda stage, fraction, *_: told.append(fraction)),
     )
     assert told == pytest.approx([0.0, 0.5, 0.5, 1.0])
+
+
+def test_a_friction_that_rises_with_speed_is_no_fit_of_eq_17():
+    """A straight rise is fitted with an asymptote of hundreds: R^2 is 1, and it means nothing."""
+    speed = np.repeat(np.geomspace(0.05, 0.8, 6), 2)
+    readings = TrialReadings(speed, 0.1 + 0.2 * speed, None, 0, "made up")
+    with pytest.raises(DataError, match="COF does not fall with speed"):
+        law_table(readings)
+    with pytest.raises(InputError, match="stribeck_fit, soap: COF does not fall with speed"):
+        stribeck_law_from_fit(stribeck_fit(speed, readings.cof), source="made up", fluid="soap")

@@ -435,3 +435,20 @@ def test_a_loss_factor_that_contradicts_the_moduli_stops(tmp_path, unit, stops):
     else:
         (sweep,) = read_rubber(path).sweeps
         np.testing.assert_allclose(sweep.loss_modulus, 1e5 * np.array([1, 2, 3, 5, 8]))
+
+
+def test_a_unit_in_the_heading_goes_before_the_one_for_columns_without(tmp_path):
+    """A file in MPa read with ``--unit kPa`` was a thousand times too soft."""
+    (tmp_path / "E.csv").write_text(
+        "f (Hz),E_stor (MPa),E_loss (MPa)\n0.1,2,0.2\n1,3,0.4\n10,4,0.6\n"
+    )
+    (tmp_path / "bare.csv").write_text("f (Hz),E_stor,E_loss\n0.1,2,0.2\n1,3,0.4\n10,4,0.6\n")
+    said, bare = (
+        read_rubber(tmp_path / name, modulus_unit="kPa").sweeps[0].storage_modulus
+        for name in ("E.csv", "bare.csv")
+    )
+    assert said == pytest.approx([2e6, 3e6, 4e6])
+    assert bare == pytest.approx([2e3, 3e3, 4e3])
+    # a unit by the column's own name corrects the file
+    (sweep,) = read_dynamic(tmp_path / "E.csv", units={"E_stor": "kPa", "E_loss": "kPa"})
+    assert sweep.storage_modulus == pytest.approx([2e3, 3e3, 4e3])

@@ -139,8 +139,8 @@ def law_table(readings: TrialReadings, *, form: str = "fit") -> LawTable:
     (below ``ENOUGH`` of them, that of all speeds pooled).
 
     Errors:
-        DataError: "fit" where COF does not fall with speed by the report's rule (R^2 below 0.5) or
-            there are too few speeds; "readings" without any repeat.
+        DataError: "fit" where COF does not fall with speed, by the report's rule (R^2 below 0.5) or
+            because it rises, or where there are too few speeds; "readings" without any repeat.
     """
     from underfoot.core import unknown_name
     from underfoot.trials.machines.stribeck_fit import stribeck_fit
@@ -154,7 +154,7 @@ def law_table(readings: TrialReadings, *, form: str = "fit") -> LawTable:
     if form == "readings":
         return _means(readings, notes)
     fit = stribeck_fit(speed, cof)
-    if fit.verdict == "mean":
+    if fit.verdict == "mean" or fit.raw[0] <= fit.raw[2]:
         raise DataError(
             f"COF does not fall with speed as Eq. 17 (R^2 {fit.r_squared:.2f})",
             where="--form fit",

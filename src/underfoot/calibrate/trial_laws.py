@@ -27,16 +27,15 @@ def stribeck_law_from_fit(
         viscosity: Pa s; None leaves out the viscous part.
 
     Errors:
-        InputError: A fit that the report's rule dropped (R^2 below 0.5): friction did not fall with
-            speed.
+        InputError: Friction did not fall with speed, by the report's rule (R^2 below 0.5) or because
+            it rises.
     """
     from underfoot.friction import StribeckLaw
 
-    if fit.tau.value is None or fit.asymptote.value is None:
+    if fit.tau.value is None or fit.asymptote.value is None or fit.raw[0] <= fit.raw[2]:
         raise InputError(
-            f"Eq. 17 was dropped for {fluid} (R^2 {fit.r_squared:.2f}): COF is the mean of its "
-            "readings",
-            where="stribeck_fit",
+            f"COF does not fall with speed as Eq. 17 (R^2 {fit.r_squared:.2f})",
+            where=f"stribeck_fit, {fluid}",
             remedy="Use SpeedTableLaw with the readings, or BoundaryLaw with their mean",
         )
 

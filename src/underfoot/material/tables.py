@@ -122,7 +122,7 @@ class FileTable:
     """A table of a file.
 
     ``lines`` are the line numbers of its rows, ``part`` counts tables of one file from 0,
-    ``stated`` gives units by column name or quantity where the file has none, or other ones.
+    ``stated`` gives units by column name, or by quantity where the file has none.
     """
 
     columns: tuple[FileColumn, ...]
@@ -194,9 +194,11 @@ class FileTable:
         return values
 
     def unit(self, column: FileColumn, quantity: str | None = None) -> str:
-        """Return the unit of a column: stated, or of the file; "" without one."""
-        stated = self.stated.get(column.name) or self.stated.get(quantity or column.quantity or "")
-        return (stated or column.unit).strip().strip("[](){}").strip()
+        """Return the unit of a column: stated for it, of the file, of its quantity; "" without."""
+        usual = self.stated.get(quantity or column.quantity or "", "")
+        return (
+            (self.stated.get(column.name) or column.unit or usual).strip().strip("[](){}").strip()
+        )
 
     def si(self, column: FileColumn, infinite: bool = False) -> np.ndarray:
         """Return the numbers of a column in the SI unit of its quantity."""
