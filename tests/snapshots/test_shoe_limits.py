@@ -337,3 +337,13 @@ def test_stray_corners_lie_three_sizes_off_and_are_few():
         assert bool(remarks) == out
     few, remarks = told._without_strays(Mesh(made[:333], "made here"))
     assert (len(few.triangles), remarks) == (333, [])
+
+
+@pytest.mark.parametrize(
+    ("length", "width"), [(350.0, 100.0), (110.0, 60.0), (40.0, 50.0), (150.0, 60.0)]
+)
+def test_the_lengths_that_are_named_are_allowed(length, width):
+    for unit, factor in (("mm", 1.0), ("m", 1e-3)):
+        scale, remark = length_unit(length * factor, width * factor, where="sole")
+        assert length * factor * scale == pytest.approx(length * 1e-3)
+        assert remark.values["unit"] == unit

@@ -27,8 +27,8 @@ def stribeck_law_from_fit(
         viscosity: Pa s; None leaves out the viscous part.
 
     Errors:
-        InputError: Friction did not fall with speed, by the report's rule (R^2 below 0.5) or because
-            it rises.
+        InputError: Friction did not fall with speed, by the report's rule (R^2 below 0.5) or as it
+            rises.
     """
     from underfoot.friction import StribeckLaw
 

@@ -147,7 +147,7 @@ def length_unit(
             "outsole alone; --cut-floor cuts a table",
         )
     name = likely[0]
-    metres = length * UNITS[name]
+    metres = _metres(length, name)
     kind = next(
         name
         for name, (_, high) in (
@@ -170,13 +170,18 @@ def length_unit(
     )
 
 
+def _metres(length: float, unit: str) -> float:
+    """Return a length in m without the rounding of the factor: 350 mm is 0.35 m."""
+    return round(length * UNITS[unit], 9)
+
+
 def _likely(length: float, width: float) -> list[str]:
     ranges = (SOLE, PIECE, HEEL) if length > SLENDER * width else (HEEL, PIECE, SOLE)
     likely = [
         name
         for low, high in ranges
         for name in ("mm", "m", "inch", "cm")
-        if low <= length * UNITS[name] <= high
+        if low <= _metres(length, name) <= high
     ]
     return list(dict.fromkeys(likely))
 
