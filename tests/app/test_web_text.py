@@ -144,7 +144,7 @@ def test_forms_of_a_message_follow_names_arms_and_pieces():
 def test_every_message_that_the_app_can_show_has_a_translation(language):
     """A remedy that nobody translated stood in English on a German page."""
     told, words = messages(), Words(Text(language).sentences())
-    assert len(told) > 1000
+    assert len(told) > 900
     assert {"the file is empty", 'there is no variant "{}"', "excluded by hand"} <= told.keys()
     missing = {form: places[0] for form, places in told.items() if not words.has(filled(form))}
     assert not missing, f"{language}.package.toml lacks {missing}"
