@@ -13,7 +13,7 @@ runs at import, in a kernel or in no test of this process, the libraries alone. 
 its room (they import its module, themselves or by a helper, or are called ``test_<room>_``), then
 the others; those that import the module first, each test once before one comes again with other
 parameters, the quickest first, ``--seconds`` of each at most. A line that runs at import meets
-the tests of the lines that read its name, else those that run anything of its file or are of its
+the tests of the lines that read its name and of the numbers that its room states, else those that run anything of its file or are of its
 room; one that no test runs in this process meets those of its room if it is compiled, else those
 that start a process. What survives is printed with
 its place: mend the tests, or say in ``mutants_alive.toml`` why it may live. A test that fails
@@ -53,6 +53,8 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 SOURCE = Path("src", "underfoot")
 NAMED = Path(__file__).with_suffix(".toml")
 ALIVE = Path(__file__).with_name("mutants_alive.toml")
+STATED = "tests/snapshots/test_stated_numbers.py"
+"""Holds what lines at import state, without running them."""
 NO_TESTS_OF_CODE = ("docs", "install")
 QUICK = "not slow and not study and not browser"
 CACHE = "__pycache__"
@@ -344,8 +346,10 @@ class Lines:
         of_file, files = self._lines.get(mutant.file, {}), tests_of(mutant.file)
         begin, end = statement_lines(mutant.file, mutant.line)
         if begin < 0:  # runs at import, for whichever test comes first: what it makes is read later
+            room = f"[underfoot.{mutant.file.split('/')[0]}]"
+            told = {one for one in self.tests.get(STATED, ()) if one.name.endswith(room)}
             if read := {one for file, at in uses(mutant) for one in self._lines[file].get(at, ())}:
-                return list(read)
+                return list(read | told)
             every = {one for tests in of_file.values() for one in tests}
             return list(every | {one for file in files for one in self.tests.get(file, ())})
         met = of_file.get(mutant.line) or of_file.get(begin)

@@ -46,7 +46,7 @@ class _Areas:
         for name in names:
             value = getattr(self, name)
             if value is not None and np.shape(value) != shape:
-                what = Message("{name} has shape {shape}", name=name, shape=np.shape(value))
+                what = Message("{name} has shape {shape}", name=name, shape=str(np.shape(value)))
                 raise InputError(what, where=f"{where}.{name}", allowed=f"{shape}")
 
     @property
