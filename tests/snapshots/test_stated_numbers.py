@@ -81,7 +81,7 @@ def of_class(kind: type) -> Iterator[tuple[str, Any]]:
             if field.default is not MISSING:
                 yield f".{field.name}", field.default
     for name, field in getattr(kind, "model_fields", {}).items():
-        if name in kind.__dict__.get("__annotations__", {}):
+        if name in inspect.get_annotations(kind):
             yield f".{name}", (field.default, field.metadata)
     for name, value in list(vars(kind).items()):
         if name.startswith("__") or name in ("model_fields", "model_config"):
