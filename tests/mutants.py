@@ -15,10 +15,10 @@ the others; those that import the module first, each test once before one comes 
 parameters, the quickest first, ``--seconds`` of each at most. A line that runs at import meets
 the tests of the lines that read its name and of the numbers that its room states, else those
 that run anything of its file or are of its room; one that no test runs in this process meets
-those of its room if it is compiled, else those that start a process. What
-survives is printed with its place: mend the tests, or say in ``mutants_alive.toml`` why it may live. A test that fails
-without a fault kills nothing; a fault that its room's test killed counts as dead while that test
-and the source stand. Not part of ``make test``.
+those of its room if it is compiled, else those that start a process. What survives is printed
+with its place: mend the tests, or say in ``mutants_alive.toml`` why it may live. A test that
+fails without a fault kills nothing; a fault that its room's test killed counts as dead while that
+test and the source stand. Not part of ``make test``.
 """
 
 import ast
