@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
+import pytest
 
 from snapshot import held, refusal
 from underfoot.calibrate import Parameter, calibrate_model, compound, law_file, pair_readings
@@ -18,8 +19,12 @@ from underfoot.calibrate.compound import (
 from underfoot.calibrate.law_file import LawTable, TrialReadings, law_file_text, law_table
 from underfoot.calibrate.least_squares import _covariance, _Scale
 from underfoot.calibrate.pair_readings import PairCalibration, PairReading
-from underfoot.calibrate.pin_regimes import _spans
-from underfoot.calibrate.stribeck_curve import ADHESION_STATES, StribeckCurve
+from underfoot.calibrate.pin_regimes import _spans, pin_regimes
+from underfoot.calibrate.stribeck_curve import ADHESION_STATES, StribeckCurve, _gap
+from underfoot.calibrate.stribeck_points import fluid_points
+from underfoot.core import SourcedValue
+from underfoot.core.catalogue import Catalogue
+from underfoot.friction.measured import BoundaryFriction
 from underfoot.material import RelaxationCurve, RelaxationSpectrum
 
 ROOM = compound.ROOM
@@ -198,3 +203,46 @@ def test_readings_of_a_pair_by_hand(file_regression):
     }
     told["limits"] = pair_readings.REPEATS, pair_readings.COUNT, pair_readings.FEWEST
     held(file_regression, told)
+
+
+def test_the_gap_that_carries_a_pressure(monkeypatch):
+    """A linear interface has it exactly; beyond both ends it is the end."""
+    context = SimpleNamespace(rq_value=1e-6)
+    monkeypatch.setattr("underfoot.compute.resolve.resolve_context", lambda case: context)
+
+    def gap(pressure, least=0.0):
+        interface = SimpleNamespace(pressure=lambda at: least + max(2e6 - 2e11 * at, 0.0))
+        rough = SimpleNamespace(build=lambda context: interface)
+        return _gap(cast(Any, SimpleNamespace(rough_contact=rough)), pressure)
+
+    assert gap(1e6) == pytest.approx(5e-6)
+    assert gap(2e6 - 0.5) == pytest.approx(2.5e-12, abs=1e-12)
+    assert (gap(2e6), gap(3e6)) == (0.0, 0.0)
+    assert [gap(1.0, least=each) for each in (1.0, 2.0)] == pytest.approx([20e-6] * 2)
+
+
+def test_points_of_a_fluid_without_a_whole_fit_are_its_mean():
+    number = SourcedValue(0.2, "1", "a table")
+    speed = np.array([0.1, 1.0])
+    for tau, left in ((None, number), (number, None), (None, None)):
+        one = BoundaryFriction("oil", "pin on tile", 0.1, number, tau, left)
+        points = fluid_points(one, rq=1e-6, speed=speed)
+        assert (points.curve, points.cof.tolist()) == ("mean", [0.2, 0.2])
+    whole = BoundaryFriction("oil", "pin on tile", 0.1, number, SourcedValue(0.5, "m/s", "a table"),
+                             SourcedValue(0.1, "1", "a table"))  # fmt: skip
+    points = fluid_points(whole, rq=1e-6, speed=speed)
+    assert points.curve == "fit"
+    assert points.cof == pytest.approx(0.1 + 0.1 * np.exp(-speed / 0.5))
+
+
+def test_a_pin_meets_a_pair_of_which_one_roughness_is_known(monkeypatch):
+    """Only where neither surface has a stylus' Rq there is nothing to say."""
+    known, unknown = (SimpleNamespace(rq_or_estimate=rq) for rq in (2e-6, None))
+    monkeypatch.setattr("underfoot.compute.resolve.resolve_context", lambda case: 1 / 0)
+    case: Any = SimpleNamespace(catalogue=Catalogue.load())
+    for sole, floor in ((known, unknown), (unknown, known)):
+        case.shoe, case.floor = SimpleNamespace(roughness=sole), SimpleNamespace(roughness=floor)
+        with pytest.raises(ZeroDivisionError):  # it goes on
+            pin_regimes(case, 0.1, np.array([0.3]), 2e5)
+    case.shoe.roughness = case.floor.roughness = unknown
+    assert pin_regimes(case, 0.1, np.array([0.3]), 2e5) is None

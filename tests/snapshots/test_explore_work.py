@@ -12,6 +12,7 @@ from test_explore_studies import BASE, HERE, PLANS, SWEEP, ended, made_up, plan_
 
 from snapshot import held, refusal
 from underfoot.explore import check, engines, posterior, store, study
+from underfoot.explore import claims as claims_module
 from underfoot.explore.check import Computer, StudyCheck, study_check
 from underfoot.explore.claims import ASKED, LARGEST, begin_round, block_edges, latest_round
 from underfoot.explore.computing import status_bytes
@@ -601,3 +602,15 @@ def test_the_first_case_of_a_process_counts_where_few_others_are_left(cases, wor
     left = _steady(pairs)
     assert len(left) == used
     assert used == cases or min(k for k, _ in left) == workers
+
+
+def test_the_latest_of_several_rounds_counts(tmp_path, monkeypatch):
+    for number in (9, 10, 2):
+        (tmp_path / str(number)).mkdir()
+    monkeypatch.setattr(claims_module, "Round", lambda path, name: (path.name, name))
+    assert latest_round(tmp_path, "me", None) == ("10", "me")
+    for number, same in ((10, True), (9, False)):
+        known = cast(Any, SimpleNamespace(number=number))
+        assert (latest_round(tmp_path, "me", known) is known) is same
+    (tmp_path / "none").mkdir()
+    assert latest_round(tmp_path / "none", "me", None) is None

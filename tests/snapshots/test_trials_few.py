@@ -8,6 +8,8 @@ import pytest
 from recording_texts import TEXTS, changes, read_lines
 from snapshot import held
 from underfoot.trials.pages import report
+from underfoot.trials.readers.seen import _steps
+from underfoot.trials.readers.text import rate_of
 from underfoot.trials.study import study_tests
 from underfoot.trials.study.file_result import FileResult, Number
 from underfoot.trials.study.study_tests import columns_of, persons_of, slip_findings, varying
@@ -157,3 +159,19 @@ def test_which_tests_a_protocol_asks_for():
     assert asked("logistic")[1] == ["risk"]
     assert "line" in asked("line")[0]
     assert any("equivalence" in one for one in asked("anova", equivalence=0.02)[0])
+
+
+def test_times_are_even_up_to_a_tenth_of_a_step():
+    """Rounded stamps are even, with the mean rate; a wider scatter keeps its times."""
+    grid = 0.01 * np.arange(101)
+    for off, even in ((0.09, True), (0.11, False), (0.19, False)):
+        times = grid.copy()
+        times[50] += off * 0.01
+        rate, start, kept = rate_of(times, "a file")
+        assert (rate, start) == (pytest.approx(100.0), 0.0)
+        assert (kept is None) is even
+
+
+def test_a_path_of_one_frame_has_no_step():
+    assert _steps(np.zeros((1, 3))).shape == (0,)
+    assert _steps(np.array([[0.0, 0.0, 0.0], [1.0, -3.0, 2.0]])).tolist() == [3.0]
