@@ -1,16 +1,20 @@
 """Whole answers of small soles: numbers, maps, draws, sentences, tables, cautions, provenance."""
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from small_pads import ARRAY, BARS, DRY, STEP, TWO_GRIDS, pad
 from snapshot import held, refusal
+from underfoot.compute import answer
 from underfoot.compute.check import case_check
 from underfoot.compute.continuation import Continuation, kept_continuation, preview
 from underfoot.compute.positions import run_cost
 from underfoot.compute.result import Result
 from underfoot.compute.run import run
+from underfoot.core import Status
+from underfoot.core.remark import Remark
 from underfoot.slip import Chang2004
 
 SQUARE = {"numerics.cells_along": 1}
@@ -140,3 +144,20 @@ def test_a_march_goes_on_under_changes(file_regression):
     seen["history"] = refusal(preview, pad(STEP), {})
     held(file_regression, seen, "continued")
     assert kept_continuation(case) is kept_continuation(case)
+
+
+@pytest.mark.parametrize("solved", [Status.CONVERGED, Status.NOT_CONVERGED])
+@pytest.mark.parametrize("breached", [False, True])
+def test_a_run_that_did_not_converge_is_never_only_out_of_range(monkeypatch, solved, breached):
+    real = answer.answer
+
+    def with_status(parts, solution, *more):
+        contact = replace(solution.contact, status=solved)
+        return real(parts, replace(solution, contact=contact), *more)
+
+    told = [Remark("shoe", "odd")] if breached else []
+    monkeypatch.setattr(answer, "_breaches", lambda *_: told)
+    monkeypatch.setattr("underfoot.compute.run.answer", with_status)
+    status = run(pad(DRY), quick=True).status
+    beyond = breached and solved is Status.CONVERGED
+    assert status is (Status.OUT_OF_RANGE if beyond else solved)

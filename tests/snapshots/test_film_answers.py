@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from snapshot import held, refusal
+from underfoot.core import InputError
 from underfoot.film.face_operator import (
     FaceMatrix,
     Faces,
@@ -395,3 +396,13 @@ REFUSED: dict[str, Callable[[], Any]] = {
 
 def test_what_is_refused(file_regression):
     held(file_regression, {name: refusal(call) for name, call in REFUSED.items()})
+
+
+def test_one_place_that_is_not_possible_is_refused():
+    """Not only where all are."""
+    with pytest.raises(InputError, match="the pad would have to rise"):
+        squeeze_time_disc(radius=0.01, end_gap=[1e-5, 2.0], **PAD)
+    before = gap_of()
+    before[0, 0] = -1e-9
+    with pytest.raises(InputError, match="the liquid before the step is negative"):
+        film_pressure(film(), before=before, time_step=1e-3)
