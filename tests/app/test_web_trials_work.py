@@ -87,6 +87,16 @@ def test_what_is_shown_after_edits_is_what_the_command_says(walks, tmp_path):
     assert [step["verdict"] for step in shown["steps"]] == ["accepted", "rejected"]
 
 
+def test_the_step_that_was_chosen_is_drawn(walks):
+    """Without one, or where there is none of this number, the first accepted."""
+    asked = _asked(walks)
+    views = {step: work_trials.trial_view(asked, WALK, step) for step in (None, 1, 2, 99)}
+    assert {step: view["chosen"] for step, view in views.items()} == {None: 1, 1: 1, 2: 2, 99: 1}
+    begun = {step: view["plot"]["events"][0]["time"] for step, view in views.items()}
+    contacts = [step["contact"] for step in views[1]["steps"]]
+    assert [begun[1], begun[2]] == pytest.approx(contacts[:2])
+
+
 def test_an_edit_is_tried_before_it_is_written(walks):
     asked = _asked(walks)
     before = work_trials.trial_view(asked, WALK)
