@@ -90,14 +90,24 @@ def of_class(kind: type) -> Iterator[tuple[str, Any]]:
         if inspect.isfunction(call):
             for parameter, default in defaults(call):
                 yield f".{name}{parameter}", default
-        elif not callable(value):
+        elif not callable(value) and (name.isupper() or not isinstance(value, dict | list | set)):
             yield f".{name}", value
+
+
+def is_filled_later(node: ast.expr | None) -> bool:
+    """Return whether a name begins empty: a memory of this process, which states nothing."""
+    if isinstance(node, ast.Call):
+        made = node.func.value if isinstance(node.func, ast.Subscript) else node.func
+        kind = ast.unparse(made).rpartition(".")[2].lower()
+        return kind.endswith(("dict", "dictionary", "list", "set")) and not node.args
+    begun = {ast.Dict: "keys", ast.List: "elts", ast.Set: "elts"}
+    return type(node) in begun and not getattr(node, begun[type(node)])
 
 
 def stated(module: Any, path: Path) -> Iterator[tuple[str, Any]]:
     """Yield what a module states itself, in the order of its lines."""
     for node in tree(path).body:
-        if isinstance(node, ast.Assign | ast.AnnAssign):
+        if isinstance(node, ast.Assign | ast.AnnAssign) and not is_filled_later(node.value):
             targets = node.targets if isinstance(node, ast.Assign) else [node.target]
             for name in (one.id for each in targets for one in ast.walk(each)
                          if isinstance(one, ast.Name)):  # fmt: skip
