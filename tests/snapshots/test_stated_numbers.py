@@ -41,7 +41,7 @@ def numbers(value: Any, seen: tuple[int, ...] = ()) -> Iterator[Any]:
     if isinstance(value, Enum | str | bytes):
         return
     if isinstance(value, bool | int | float | complex | np.generic):
-        yield value
+        yield value.item() if isinstance(value, np.generic) else value
     elif isinstance(value, np.ndarray):
         yield from value.ravel().tolist() if value.dtype.kind in "biufc" else ()
     elif isinstance(value, Mapping):
