@@ -687,7 +687,7 @@ def met(
             answers.append(Answer(mutant, killer, True, 0))
             continue
         meeting, files = lines.meeting(mutant), tests_of(mutant.file)
-        nearest = nearest_and_others(mutant.file)[0]
+        nearest = nearest_and_others(mutant.file)[0] if in_function(mutant) else (STATED,)
         near = in_turn((one for one in meeting if one.file in files), seconds, nearest)
         others = [] if own_only else [one for one in meeting if one.file not in files]
         plans[mutant] = near, in_turn(others, seconds)

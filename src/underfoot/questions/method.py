@@ -491,7 +491,8 @@ def _sides(cof: SourcedValue) -> tuple[float, float]:
     """Return the standard deviation of ln COF below and above its value, by its interval."""
     value = max(cof.value or 0.0, 1e-9)
     if cof.interval is None or cof.interval[0] <= 0:
-        return ((cof.uncertainty or 0.0) / value,) * 2
+        half = (cof.uncertainty or 0.0) / value
+        return half, half
     low, high = cof.interval
     return max(math.log(value / low), 0.0) / _Z95, max(math.log(high / value), 0.0) / _Z95
 
