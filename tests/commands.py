@@ -33,3 +33,10 @@ def called(*words, folder="."):
     if done.exception is not None and not isinstance(done.exception, SystemExit):
         raise done.exception
     return CompletedProcess(words, done.exit_code, done.stdout, done.stderr)
+
+
+def said(folder, *words):
+    """Return how a command ended and what it printed, without the name of its folder."""
+    done = called(*words, folder=folder)
+    printed = (text.replace(str(folder), "HERE") for text in (done.stdout, done.stderr))
+    return [done.returncode, *printed]

@@ -16,6 +16,7 @@ from underfoot.app.project import Project
 from underfoot.app.projects import Servers
 from underfoot.app.session import Exchange, Session
 from underfoot.app.text import Text
+from underfoot.app.variant_bar import new_variant
 from underfoot.core.remark import MARK
 
 RUN = "underfoot.app.work:computed"
@@ -37,6 +38,13 @@ def session_of(folder, language="en", **query):
     jobs.live = jobs.reading = cast(Any, Here())
     project, elsewhere = Project(folder), Servers()
     return Session(project, jobs, text, query, Exchange(), PAGES, elsewhere=elsewhere)
+
+
+def session_of_a_variant(folder):
+    """Return a session of a project with a half worn shoe in detergent, "a"."""
+    made = session_of(folder)
+    new_variant(made, "a", shoe="work_shoe_half_tread", contaminant="detergent")
+    return made
 
 
 def shown(build, look):

@@ -7,7 +7,7 @@ from typing import Any, cast
 import pytest
 from nicegui import ui
 
-from page_session import RUN, answering, computed, pages_shown, session_of
+from page_session import RUN, answering, computed, pages_shown, session_of_a_variant
 from snapshot import held
 from underfoot.app.jobs import DONE, FAILED, RUNNING
 from underfoot.app.pages import (
@@ -20,15 +20,11 @@ from underfoot.app.pages import (
     trials,
 )
 from underfoot.app.project import Project
-from underfoot.app.variant_bar import new_variant
 
 
 @pytest.fixture
 def session(tmp_path):
-    """A session of a project with a variant."""
-    made = session_of(tmp_path)
-    new_variant(made, "a", shoe="work_shoe_half_tread", contaminant="detergent")
-    return made
+    return session_of_a_variant(tmp_path)
 
 
 def went_of(monkeypatch, session):

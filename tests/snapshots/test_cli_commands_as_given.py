@@ -11,7 +11,7 @@ import typer
 import typer.main
 
 import made_answers as made
-from commands import called
+from commands import said
 from snapshot import folder_lines, held, refusal
 from trial_exports import EXPORTS
 from underfoot.cli import (
@@ -40,17 +40,7 @@ ROOMS = (calibrate, cases, contact, material, micro, options, outsole, outsole_m
 HEEL = '[heel]\nlength = "40 mm"\nwidth = "30 mm"\nrear_radius = "10 mm"\nprofile = "flat"\n'
 
 
-@pytest.fixture(autouse=True)
-def wide(monkeypatch):
-    """A terminal of 100 columns."""
-    monkeypatch.setenv("COLUMNS", "100")
-    monkeypatch.setenv("TERM", "dumb")
-
-
-def said(folder, *words):
-    done = called(*words, folder=folder)
-    return [done.returncode, done.stdout.replace(str(folder), "HERE"),
-            done.stderr.replace(str(folder), "HERE")]  # fmt: skip
+pytestmark = pytest.mark.usefixtures("wide")
 
 
 def every_command(group, names=()):

@@ -16,7 +16,7 @@ from test_calibrate_answers import READINGS
 import made_answers as made
 import underfoot.app.serve
 import underfoot.cli
-from commands import called
+from commands import said
 from snapshot import folder_lines, held
 from underfoot.block import command_input
 from underfoot.block.result import MicroAverages, MicroResult
@@ -32,18 +32,7 @@ from underfoot.studies import study as study_named
 from underfoot.studies.runner import Computed, PublishedStudyResult, StudyTable
 from underfoot.studies.verdict import ComputedQuantity
 
-
-@pytest.fixture(autouse=True)
-def wide(monkeypatch):
-    """A terminal of 100 columns."""
-    monkeypatch.setenv("COLUMNS", "100")
-    monkeypatch.setenv("TERM", "dumb")
-
-
-def said(folder, *words):
-    done = called(*words, folder=folder)
-    return [done.returncode, done.stdout.replace(str(folder), "HERE"),
-            done.stderr.replace(str(folder), "HERE")]  # fmt: skip
+pytestmark = pytest.mark.usefixtures("wide")
 
 
 class Told(Presentable):

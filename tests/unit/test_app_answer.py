@@ -10,7 +10,17 @@ from typing import Any
 import pytest
 from nicegui import ui
 
-from page_session import answering, button, computed, press, session_of, shown, until, words_of
+from page_session import (
+    answering,
+    button,
+    computed,
+    press,
+    session_of,
+    session_of_a_variant,
+    shown,
+    until,
+    words_of,
+)
 from underfoot.app import components
 from underfoot.app.jobs import DONE, FAILED, INTERRUPTED, RUNNING, STOPPED, JobQueue
 from underfoot.app.pages import answer, repair, wear
@@ -33,9 +43,7 @@ ANSWER: dict[str, Any] = {
 
 @pytest.fixture
 def session(tmp_path):
-    made = session_of(tmp_path)
-    new_variant(made, "a", shoe="work_shoe_half_tread", contaminant="detergent")
-    return made
+    return session_of_a_variant(tmp_path)
 
 
 @pytest.fixture

@@ -11,7 +11,17 @@ import pytest
 import tomlkit
 from nicegui import ui
 
-from page_session import answering, button, computed, press, session_of, shown, until, words_of
+from page_session import (
+    answering,
+    button,
+    computed,
+    press,
+    session_of,
+    session_of_a_variant,
+    shown,
+    until,
+    words_of,
+)
 from underfoot.app import frame, projects, serve, work, work_studies
 from underfoot.app.jobs import DONE, FAILED, RUNNING, STOPPED, QueuedTask
 from underfoot.app.pages import compare, studies
@@ -28,9 +38,7 @@ SHEET: dict[str, Any] = {
 
 @pytest.fixture
 def session(tmp_path):
-    made = session_of(tmp_path)
-    new_variant(made, "a", shoe="work_shoe_half_tread", contaminant="detergent")
-    return made
+    return session_of_a_variant(tmp_path)
 
 
 # studies

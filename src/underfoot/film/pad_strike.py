@@ -86,8 +86,7 @@ def touch_time(strike: Strike, contact_pressure: Callable[[ArrayLike], Any]) -> 
     def touched(_: float, state: Any) -> float:
         return float(contact(max(state[0], THINNEST))) - 0.5 * strike.load
 
-    # SciPy ends the solution where an event with this attribute is met
-    setattr(touched, "terminal", True)  # noqa: B010 - functions declare no such attribute
+    vars(touched)["terminal"] = True  # SciPy ends the solution where this event is met
     start = [strike.pool, strike.speed]
     from scipy.integrate import solve_ivp  # heavy: it brings the optimisers along
 
