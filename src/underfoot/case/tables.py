@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from underfoot.core import DataError, InputError, nearest_match, to_si
+from underfoot.core import DataError, InputError, to_si
+from underfoot.core.errors import missing_file
 from underfoot.core.files import checksum
 from underfoot.core.remark import Message
 from underfoot.core.units import refuse_percent
@@ -29,13 +30,8 @@ def existing_file(path: Path, where: str, pattern: str = "*") -> Path:
     """Return ``path``; an error names the nearest file of ``pattern`` in its folder."""
     if path.is_file():
         return path
-    near = [file.name for file in path.parent.glob(pattern)] if path.parent.is_dir() else []
-    raise InputError(
-        Message("there is no file {path}", path=path),
-        where=where,
-        nearest=nearest_match(path.name, near),
-        remedy="The path counts from the folder of the case file",
-    )
+    remedy = "The path counts from the folder of the case file"
+    raise missing_file(path, pattern, where=where, remedy=remedy)
 
 
 def plain(given: Any) -> Any:

@@ -9,7 +9,8 @@ from typing import Any
 import tomlkit
 from tomlkit.items import InlineTable, Item
 
-from underfoot.core import InputError, nearest_match
+from underfoot.core import InputError
+from underfoot.core.errors import missing_file
 from underfoot.core.files import whole_file
 from underfoot.core.remark import Message
 from underfoot.core.typed import float_of_text
@@ -20,12 +21,7 @@ def read_text(path: Path) -> str:
     try:
         return path.read_text(encoding="utf-8-sig")
     except FileNotFoundError as error:
-        near = [other.name for other in path.parent.glob("*.toml")] if path.parent.is_dir() else []
-        raise InputError(
-            Message("there is no file {path}", path=path),
-            nearest=nearest_match(path.name, near),
-            remedy="Make one with: underfoot new FILE",
-        ) from error
+        raise missing_file(path, "*.toml", remedy="Make one with: underfoot new FILE") from error
     except UnicodeDecodeError as error:
         raise InputError(
             Message("{path} can't be read ({strerror})", path=path, strerror=error),

@@ -170,8 +170,8 @@ def _mean(numbers: Sequence[Numbers]) -> Numbers | None:
     """Return the means of numbers over places; None without any."""
     if not numbers:
         return None
-    names = set.intersection(*(set(number) for number in numbers))
-    return {name: float(np.mean([number[name] for number in numbers])) for name in names}
+    names = set.intersection(*(set(each) for each in numbers))
+    return {name: float(np.mean([each[name] for each in numbers])) for name in names}
 
 
 def film_spreads(

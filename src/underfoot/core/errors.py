@@ -3,6 +3,7 @@
 import difflib
 import errno
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 from .remark import Message, together
 
@@ -138,6 +139,19 @@ def file_trouble(error: OSError) -> str:
     if text := texts.get(error.errno or 0):
         return _sentence(text)
     return f"{error.strerror or error}: {error.filename or ''}".rstrip(": ") + "."
+
+
+def missing_file(
+    path: Path, pattern: str = "*", *, where: str | None = None, remedy: str | None = None
+) -> InputError:
+    """Return the error of a file that is not there: the nearest of ``pattern`` in its folder."""
+    near = [other.name for other in path.parent.glob(pattern)] if path.parent.is_dir() else []
+    return InputError(
+        Message("there is no file {path}", path=path),
+        where=where,
+        nearest=nearest_match(path.name, near),
+        remedy=remedy,
+    )
 
 
 def nearest_match(given: str, known: Iterable[str], *, least: float = 0.5) -> str | None:

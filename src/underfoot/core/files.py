@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
-from .errors import InputError, nearest_match
+from .errors import InputError, missing_file
 from .remark import Message
 from .typed import float_of_text
 
@@ -170,10 +170,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8-sig"), parse_float=float_of_text)
     except FileNotFoundError as error:
-        near = [other.name for other in path.parent.glob("*.toml")] if path.parent.is_dir() else []
-        raise InputError(
-            Message("there is no file {path}", path=path), nearest=nearest_match(path.name, near)
-        ) from error
+        raise missing_file(path, "*.toml") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(
             Message("is no TOML file ({error})", error=error), where=str(path)

@@ -243,9 +243,9 @@ def _content(cell: Any) -> Any:
 
 def _names(code: CodeType) -> Iterable[str]:
     yield from code.co_names
-    for co_const in code.co_consts:
-        if isinstance(co_const, CodeType):
-            yield from _names(co_const)
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _names(constant)
 
 
 def _inner_function(part: Any) -> Any:

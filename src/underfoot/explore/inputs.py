@@ -17,6 +17,7 @@ from underfoot.case.section import quantity_of
 from underfoot.core import InputError, RangeError, display, to_si, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.catalogue import Catalogue
+from underfoot.core.errors import missing_file
 from underfoot.core.remark import Message
 from underfoot.core.units import spread_to_si
 
@@ -249,7 +250,7 @@ def read_joint_draws(path: Path) -> JointDraws:
         table = pandas.read_csv(path, comment="#")
         values = table.to_numpy(dtype=float)
     except FileNotFoundError:
-        raise InputError(Message("there is no file {path}", path=path)) from None
+        raise missing_file(path, "*.csv") from None
     except (OSError, ValueError) as error:
         raise InputError(
             Message("{path} can't be read ({strerror})", path=path, strerror=error)

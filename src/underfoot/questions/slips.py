@@ -417,7 +417,7 @@ class MeasuredRcof:
     @classmethod
     def of(cls, steps: Mapping[str, Sequence[float]], who: Message, more: Message) -> Self:
         """Return that of the steps of each person or file; ``who`` names these, ``more`` adds."""
-        values = [np.asarray(step, dtype=float) for step in steps.values()]
+        values = [np.asarray(each, dtype=float) for each in steps.values()]
         count = sum(value.size for value in values)
         freedom = count - len(values)
         squares = sum(float(((value - value.mean()) ** 2).sum()) for value in values)

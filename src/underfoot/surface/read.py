@@ -135,13 +135,13 @@ def read_numbers(path: Path | str) -> TextNumbers:
         else 17
         for cells, form in zip(zip(*rows[:200], strict=True), forms, strict=True)
     )
+    of_words = Message(
+        "lines of words below the numbers left out: {count}", count=count - len(rows)
+    )
     said = {
         "decimal commas read as decimal points": any(form.decimal == "," for form in forms),
         "signs between thousands left out": any(form.thousands for form in forms),
-        Message("lines of words below the numbers left out: {count}", count=count - len(rows)): len(
-            rows
-        )
-        < count,
+        of_words: left > 0,
         "the first column counts the rows: left out": numbered,
     }
     notes = tuple(note for note, holds in said.items() if holds)

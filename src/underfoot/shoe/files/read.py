@@ -11,7 +11,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from underfoot.core import DataError, InputError, nearest_match
+from underfoot.core import DataError, InputError
+from underfoot.core.errors import missing_file
 from underfoot.core.optional import optional_module
 from underfoot.core.registry import find_offer
 from underfoot.core.remark import Message
@@ -174,12 +175,7 @@ def _head(path: Path) -> bytes:
         with path.open("rb") as stream:
             head = stream.read(4096)
     except FileNotFoundError as error:
-        near = [other.name for other in path.parent.glob("*")] if path.parent.is_dir() else []
-        raise InputError(
-            Message("there is no file {path}", path=path),
-            where=str(path),
-            nearest=nearest_match(path.name, near),
-        ) from error
+        raise missing_file(path, where=str(path)) from error
     except OSError as error:
         raise DataError(
             Message("the file cannot be read ({strerror})", strerror=error.strerror),

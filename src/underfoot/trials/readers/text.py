@@ -447,7 +447,7 @@ def si_unit(text: str) -> tuple[str, float, float] | None:
         parts = [part for part in _SUFFIXES.split(plain) if part]
         names = [_WEIGHTS.get(n := _unit_name(part) or "", n) for part in parts]
         if len(parts) == 1:
-            names = _is_glued_moment(plain)
+            names = _glued_units(plain)
         if len(names) == 2:
             name = next(
                 (f"{a}*{b}" for a, b in (names, names[::-1]) if f"{a}*{b}" in _MOMENTS), None
@@ -472,7 +472,7 @@ def force_unit(text: str) -> tuple[str, float, float] | None:
     return ("N", _FORCES[_WEIGHTS[name]], 0.0) if name in _WEIGHTS else si_unit(text)
 
 
-def _is_glued_moment(word: str) -> list[str]:
+def _glued_units(word: str) -> list[str]:
     """Force and arm of a moment written as one word: Nmm, kNm, lbft, kgfcm, inlbf."""
     parts = ((word[:i], word[i:]) for i in range(len(word) - 1, 0, -1))
     pairs = ([_WEIGHTS.get(n := _unit_name(p) or "", n) for p in two] for two in parts)

@@ -66,10 +66,8 @@ def read_mvnx(draft: RecordingDraft) -> Trial:
         for point in every(segment, "point") if "Foot" in label else ():
             place = next(every(point, "pos_b"), None)
             if turn is not None and place is not None and place.text:
-                q, p = (
-                    turn[:, i],
-                    numbers(place.text, 3, Message("pos_b of a point of {label}", label=label)),
-                )
+                what = Message("pos_b of a point of {label}", label=label)
+                q, p = turn[:, i], numbers(place.text, 3, what)
                 twice = 2.0 * np.cross(q[:, 1:], p)
                 moved = p + q[:, :1] * twice + np.cross(q[:, 1:], twice)
                 name = f"{label.removesuffix('Foot')} {point.get('label', '').removeprefix('p')}"
