@@ -135,9 +135,8 @@ def read_numbers(path: Path | str) -> TextNumbers:
         else 17
         for cells, form in zip(zip(*rows[:200], strict=True), forms, strict=True)
     )
-    of_words = Message(
-        "lines of words below the numbers left out: {count}", count=count - len(rows)
-    )
+    left = count - len(rows)
+    of_words = Message("lines of words below the numbers left out: {count}", count=left)
     said = {
         "decimal commas read as decimal points": any(form.decimal == "," for form in forms),
         "signs between thousands left out": any(form.thousands for form in forms),
