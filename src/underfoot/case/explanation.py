@@ -60,6 +60,7 @@ def explanation(name: str, catalogue: Catalogue, *, full: bool = False) -> str:
         parts.append(catalogue.describe(name))
     if key := _key(name):
         parts.append(key)
+    parts += _keys_ending(name)
     parts += _options_named(name)
     closures = dict(_closures())
     if (equation := _EQUATION.fullmatch(name.strip())) is not None:
@@ -86,7 +87,9 @@ def explanation(name: str, catalogue: Catalogue, *, full: bool = False) -> str:
         ]
         parts.append("Formulas (underfoot explain NAME):\n" + "\n".join(lines))
     if not parts:
-        names = {*TERMS, *(entry for _, entry in catalogue.entries), *closures, *paths()}
+        ends = {path.rpartition(".")[2] for path in paths()}
+        entries = {entry for _, entry in catalogue.entries}
+        names = {*TERMS, *entries, *closures, *paths(), *ends}
         raise unknown_name("name", name, names)
     return "\n\n".join(parts)
 
@@ -98,7 +101,7 @@ def _key(path: str) -> str:
     field = field_at(path)
     if field is None:
         below = [key for key in paths() if key.startswith(path + ".")]
-        return f"{path} holds: {', '.join(below)}" if below else ""
+        return _fold(f"{path} holds: {', '.join(below)}") if below else ""
     lines = [f"{path}: {field.description or 'a value of case files'}"]
     quantity = quantity_of(field)
     if quantity is not None:
@@ -109,6 +112,17 @@ def _key(path: str) -> str:
         mark = ", assumed" if default.assumed else ""
         lines.append(f"  default {default.text} ({default.source}{mark})")
     return "\n".join(lines)
+
+
+def _keys_ending(name: str) -> Iterator[str]:
+    """Yield what the key of case files is that ends in a word, or a list of several keys."""
+    ending = [
+        path for path in paths() if path.endswith(f".{name}") and (field_at(path) or path in keys())
+    ]
+    if len(ending) == 1:
+        yield _key(ending[0])
+    elif ending:
+        yield _fold("Keys of case files (underfoot explain KEY): " + ", ".join(ending))
 
 
 def _slot(path: str, slot: type[Option]) -> str:
@@ -134,10 +148,14 @@ def _options_named(name: str) -> Iterator[str]:
         own = [key for key in option.model_fields if key != slot.key]
         lines = [f'{path} = "{name}": {inspect.getdoc(option)}']
         if own:
-            lines.append(textwrap.fill("Keys: " + ", ".join(own), WIDTH, subsequent_indent="  "))
+            lines.append(_fold("Keys: " + ", ".join(own)))
         if option.source:
             lines.append(f"Source: {option.source}")
         yield "\n".join(lines)
+
+
+def _fold(line: str, indent: str = "  ") -> str:
+    return textwrap.fill(line, WIDTH, subsequent_indent=indent, break_on_hyphens=False)
 
 
 def _closures() -> Iterator[tuple[str, Any]]:
@@ -182,8 +200,7 @@ def _equation(number: int, closures: Mapping[str, Any]) -> str:
         name = path.rpartition(".")[2]
         see = f": underfoot explain {name}" if name in closures else ""
         lines.append(f"Computed by {path}{see}")
-    folded = [textwrap.fill(line, WIDTH, subsequent_indent="    ") for line in lines]
-    return "\n".join(folded)
+    return "\n".join(_fold(line, "    ") for line in lines)
 
 
 def _equation_text(numbers: list[int]) -> str:

@@ -124,7 +124,9 @@ def keys() -> dict[str, type[Option]]:
 
 
 def paths() -> list[str]:
-    """Return every dotted path that a case file may set, sections included."""
+    """Return every dotted path that a case file may set, sections included, of all packages."""
+    for slot in {*slot_table().values()}:
+        slot.options()
     leaves = [*fields(), *keys()]
     sections = {path.rsplit(".", depth)[0] for path in leaves for depth in (1, 2, 3)}
     return sorted({*leaves, *sections})

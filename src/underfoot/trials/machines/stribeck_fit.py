@@ -212,17 +212,11 @@ def stribeck_fit(
         )  # fmt: skip
         mean = float(y.mean())
         error = float(y.std(ddof=1) / np.sqrt(len(y)))
+        why = Message("R^2 below {moderate}", moderate=MODERATE)
         parameters = (
             FitParameter("cof_bl", mean, "1", error, remark="mean COF"),
-            FitParameter(
-                "tau_hydro", None, "m/s", remark=Message("R^2 below {moderate}", moderate=MODERATE)
-            ),
-            FitParameter(
-                "cof_asymptote",
-                None,
-                "1",
-                remark=Message("R^2 below {moderate}", moderate=MODERATE),
-            ),
+            FitParameter("tau_hydro", None, "m/s", remark=why, identified=False),
+            FitParameter("cof_asymptote", None, remark=why, identified=False),
         )
     else:
         parameters = _parameters(v, y, (asymptote, start, tau, rss), boundary, confidence)
