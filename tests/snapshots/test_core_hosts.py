@@ -261,3 +261,92 @@ def test_lists_of_a_page_fold_away_beyond_the_third_line(count, folds):
     html = page_part([PageSection("t", items=[f"line {k}" for k in range(count)])])
     assert html.count("line ") == count
     assert ("<details" in html) == folds
+
+
+def test_a_job_has_an_answer_once_it_is_done_or_its_error():
+    job = worker.Job(3)
+    assert "job 3 is not done" in refusal(job.result)
+    job.done, job.answer = True, 7
+    assert job.result() == 7
+    job.error = Cancelled("stopped")
+    assert refusal(job.result).startswith("Cancelled")
+
+
+class Told(worker.Worker):
+    """A worker whose process is made up: it is started and killed by name alone."""
+
+    def _start(self) -> None:
+        self.killed = getattr(self, "killed", 0)
+        self._pipe: Any = Words()
+        self._cancelled: Any = SimpleNamespace(set=lambda: None, clear=lambda: None)
+        self._process: Any = SimpleNamespace(
+            kill=self._kill, join=lambda: None, is_alive=lambda: True
+        )
+
+    def _kill(self) -> None:
+        self.killed += 1
+
+
+class Words:
+    """A pipe that has what its worker said."""
+
+    def __init__(self) -> None:
+        self.said, self.sent = list[Any](), list[Any]()
+
+    def poll(self, seconds: float) -> bool:
+        return bool(self.said)
+
+    def recv(self) -> Any:
+        word = self.said.pop(0)
+        if word is EOFError:
+            raise EOFError
+        return word
+
+    def send(self, message: Any) -> None:
+        self.sent.append(message)
+
+    def close(self) -> None:
+        pass
+
+
+def test_a_worker_has_one_job_at_a_time_and_hears_no_word_of_an_old_one():
+    made = Told()
+    assert made.poll() is None
+    assert made.cancel() is None
+    assert not made.busy
+    job = made.submit(len, "abc", more=1)
+    assert made.busy
+    assert made._pipe.sent == [(1, len, ("abc",), {"more": 1})]
+    assert "the worker is busy" in refusal(made.submit, len)
+    made._pipe.said += [(0, "answer", 9), (1, "progress", ("s", 0.5, 2.0)), (1, "answer", 3)]
+    assert made.poll() is job
+    assert (job.stage, job.fraction, job.residual, job.answer) == ("s", 1.0, 2.0, 3)
+    assert not made.busy
+    assert made.killed == 0
+    again = made.submit(len)
+    assert again.number == 2
+    made._pipe.said += [(2, "error", ValueError("bad")), (2, "answer", 1)]
+    assert made.poll() is again
+    assert refusal(made.wait, again).startswith("ValueError")
+    lost = made.submit(len)
+    made._pipe.said = [EOFError]
+    assert made.poll() is lost
+    assert "worker process died" in refusal(lost.result)
+    assert made.killed == 1
+    deaf = made.submit(len)
+    assert made.cancel() is deaf
+    assert refusal(deaf.result).startswith("Cancelled")
+    assert made.killed == 2
+    heeds = made.submit(len)
+    made._pipe.said = [(5, "progress", ("s", 0.1, None)), (5, "error", Cancelled("stopped"))]
+    assert made.cancel() is heeds
+    assert refusal(heeds.result).startswith("Cancelled")
+    assert made.killed == 2
+    dead = made._process
+    dead.is_alive = lambda: False
+    made.submit(len)
+    assert made._process is not dead
+    assert made.killed == 3
+    with made:
+        pass
+    assert made.killed == 4

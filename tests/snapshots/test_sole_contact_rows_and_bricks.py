@@ -54,7 +54,7 @@ def test_near_cells_of_a_half_space_are_exact():
         np.testing.assert_allclose(risen[near], exact[near], rtol=1e-9)
         # far away a part of a square acts from its middle, on land alone
         far = ~near & at_home & (cells.width[one] == 1.0) & at_home[one]
-        np.testing.assert_allclose(risen[far], exact[far], rtol=0.02)
+        np.testing.assert_allclose(risen[far], exact[far], rtol=0.05)
 
 
 def test_a_cell_beside_the_land_of_squares_belongs_to_the_nearest_of_it():
