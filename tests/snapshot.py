@@ -232,9 +232,9 @@ def _near(one: str, other: str) -> bool:
     """Return whether two numbers as written differ by rounding alone."""
     if one == other:
         return True
-    (first, digits), (second, _) = map(_number, (one, other))
-    if not digits:  # a count
+    if not re.search(r"[.eE]", one):  # a count
         return False
+    (first, digits), (second, _) = map(_number, (one, other))
     last = 1.01 * 10.0**-digits if len(re.sub(r"\D", "", one).lstrip("0")) > 2 else 0.0
     return math.isclose(first, second, rel_tol=RELATIVE, abs_tol=last)
 

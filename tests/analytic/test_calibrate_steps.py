@@ -179,8 +179,8 @@ def test_errors_that_readings_made_smaller_are_named_the_most_first():
 
     def taken(*errors):
         made = PairCalibration((reading,), cast(Any, None), rows, rows, errors, 100.0)
-        assert all(name in made.headline()[1] for name, *_ in made._taken())
-        return [name for name, *_ in made._taken()]
+        assert all(name in made.headline()[1] for name, *_ in made._smaller_errors())
+        return [name for name, *_ in made._smaller_errors()]
 
     little, much, none = ("little", 0.3, 0.28), ("much", 0.3, 0.2), ("none", 0.5, 0.49)
     assert taken(little, much, none) == ["much", "little"]

@@ -60,10 +60,10 @@ def test_an_answer_is_changed_and_kept(file_regression, monkeypatch, session):
     asyncio.run(page._cut(2))
     assert project.case("a").value("motion.speed") == pytest.approx(0.4)
     told["cut"] = [asked[0][0], asked[0][1][2]]
-    message = asyncio.run(page._moved({"motion.speed": "0.5 m/s"}))
+    message = asyncio.run(page._preview({"motion.speed": "0.5 m/s"}))
     told["moved"], told["cof"] = message, page.preview_cof
     answering(monkeypatch, session, previewed=InputError("too wide", allowed="below 1"))
-    told["refused"], told["no cof"] = asyncio.run(page._moved({})), page.preview_cof
+    told["refused"], told["no cof"] = asyncio.run(page._preview({})), page.preview_cof
     tried = project.folder / "tried"
     tried.mkdir()
     (tried / "result.json").write_text("{}")

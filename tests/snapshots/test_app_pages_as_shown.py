@@ -206,7 +206,7 @@ def test_sliders_of_every_pattern(file_regression, monkeypatch, session):
         for pattern in design.TreadPattern.options():
             page = design._Design(session, "b")
             page.view = SoleView(session)
-            changed = page._patterned(pattern)
+            changed = page._pattern_changes(pattern)
             added = more if pattern == "grid" else {}
             try:
                 session.project.change("b", changed | added)
@@ -326,8 +326,8 @@ def test_behind_a_preview(file_regression, monkeypatch, session, known):
 
     async def act(places):
         with places["page"]:
-            said.append(await page._moved({"motion.speed": "0.5 m/s"}))
-            page._rested({"motion.speed": "0.5 m/s", "shoe.wear.depth": "1 mm"})
+            said.append(await page._preview({"motion.speed": "0.5 m/s"}))
+            page._start_tried({"motion.speed": "0.5 m/s", "shoe.wear.depth": "1 mm"})
             ran: Any = page.tried
             said.append([ran.title, ran.about, ran.arguments[2]])
             ran.state, ran.answer = DONE, 0.3 if known else None

@@ -202,10 +202,10 @@ def test_a_study_is_edited(file_regression, monkeypatch, session):
             await page.keep("base", "../variants/b.toml")
             told["base"] = page.written()
             page.editor.value = 'base = "x"\n'
-            await page._edited()
+            await page._take_text()
             told["edited"] = page.written()
             before = len(asked)
-            await page._edited()  # nothing has changed
+            await page._take_text()  # nothing has changed
             told["asks again"] = len(asked) - before
             await page.keep("outputs", {"maximise": ["cof"], "require": None}, part=True)
             await page.keep("vary", {"motion.speed": {"from": 1, "to": 2}})
@@ -248,7 +248,7 @@ def test_folders_of_trials_that_are_dropped(file_regression, monkeypatch, sessio
     opened: list[str] = []
     monkeypatch.setattr(trials._Trials, "open", lambda self, name: opened.append(name))
     settled = iter(["walks", ""])
-    monkeypatch.setattr(trials._Trials, "_settled", lambda self, arriving: next(settled))
+    monkeypatch.setattr(trials._Trials, "_settle_folder", lambda self, arriving: next(settled))
     monkeypatch.setattr(trials._Trials, "_turn", lambda self, **_: None)
 
     class Drop:

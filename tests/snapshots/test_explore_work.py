@@ -119,7 +119,7 @@ def test_how_a_worker_waits(file_regression, monkeypatch):
             return answer
 
         monkeypatch.setattr(one, "_begin_next", begin)
-        for count, job in enumerate(one._claimed(leads, lines.append)):
+        for count, job in enumerate(one._claim_jobs(leads, lines.append)):
             lines.append(f"job {job}")
             clock[0] += 0.6
             assert count < 40

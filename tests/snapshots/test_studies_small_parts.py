@@ -234,7 +234,7 @@ def test_a_separation_that_no_load_gives_is_a_failure_once(monkeypatch):
         loads.append(mean)
         return SimpleNamespace(pressure=np.full((2, 2), mean))
 
-    march._loaded = loaded
+    march._press = loaded
     monkeypatch.setattr(transient, "_separation", lambda *_: 5.0)
     height = np.array([[0.0, 1.0], [2.0, 3.0]])
     march._at_height(height, np.full((2, 2), 0.5), 1.0)

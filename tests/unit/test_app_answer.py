@@ -298,8 +298,8 @@ def test_the_full_run_behind_a_preview_replaces_it_and_may_be_kept(
 
     def build():
         page.behind, page.view = ui.element(), SimpleNamespace(show=views.append)
-        page._rested({"motion.speed": "0.4 m/s"})
-        page._rested({"motion.speed": "0.5 m/s"})
+        page._start_tried({"motion.speed": "0.4 m/s"})
+        page._start_tried({"motion.speed": "0.5 m/s"})
 
     async def look(elements):
         task = page.tried
@@ -345,7 +345,7 @@ def test_a_preview_tells_its_cof_or_that_there_is_none(session, page, monkeypatc
     seen = {"cof": 0.3014, "error": 0.0123, "fluid_load": "90 N", "html": "sole", "slip": None}
     asked = answering(monkeypatch, session, previewed=seen)
     change = {"motion.speed": "0.4 m/s"}
-    told = asyncio.run(page._moved(change))
+    told = asyncio.run(page._preview(change))
     assert [(name, *given) for name, given, _ in asked] == [
         ("previewed", str(session.project.path("a")), str(page.folder), change)
     ]
@@ -354,9 +354,9 @@ def test_a_preview_tells_its_cof_or_that_there_is_none(session, page, monkeypatc
     assert page.preview_cof == 0.3014
     answering(monkeypatch, session, previewed=seen | {"slip": 0.5, "slip_interval": None})
     risk = page.text("answer.risk", share="50 %")
-    assert asyncio.run(page._moved(change))["texts"]["preview_note"] == risk
+    assert asyncio.run(page._preview(change))["texts"]["preview_note"] == risk
     answering(monkeypatch, session, previewed=InputError("too fast", where="speed"))
-    told = asyncio.run(page._moved(change))
+    told = asyncio.run(page._preview(change))
     assert told["unanswered"] is True
     assert told["texts"] == {
         "preview": page.text("answer.no_preview"), "preview_note": "Too fast",

@@ -191,7 +191,7 @@ def test_a_design_keeps_what_is_chosen_and_a_new_pattern_brings_what_it_needs(se
     monkeypatch.setattr(session, "go", lambda *_, **__: None)
     made: Any = design._Design(session, "a")
     case = session.project.case("a")
-    patterned = made._patterned("waves")
+    patterned = made._pattern_changes("waves")
     lacks = {f"shoe.tread.{key}" for key in design.usual_tread("waves")
              if case.value(f"shoe.tread.{key}") is None}  # fmt: skip
     assert set(patterned) == {"shoe.tread.pattern"} | lacks

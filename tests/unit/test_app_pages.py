@@ -429,7 +429,7 @@ def test_sliders_of_a_design_keep_what_they_are_moved_to_and_those_of_an_answer_
     def tried():
         page = SimpleNamespace(
             session=session, text=session.text, case=session.project.case(name),
-            _moved=None, _rested=None, view=ui.element(),
+            _preview=None, _start_tried=None, view=ui.element(),
         )  # fmt: skip
         answer._Answer._live(cast(Any, page))
 

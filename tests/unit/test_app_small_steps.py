@@ -167,7 +167,7 @@ def test_an_edit_is_tried_without_being_written_and_written_when_it_is_kept(refu
         study=SimpleNamespace(asked="asked", done=[], undone=["one"]), _discard=discard,
         view={"file": "a", "chosen": 1},
     )  # fmt: skip
-    page._answered = lambda *given, **more: TrialView._answered(page, *given, **more)
+    page._ask_change = lambda *given, **more: TrialView._ask_change(page, *given, **more)
     asyncio.run(TrialView.tried(page, change))
     assert page.pending == (None if refused else change)
     asyncio.run(TrialView._keep_edit(page, change))

@@ -220,7 +220,7 @@ def test_a_new_path_is_proposed_a_range_about_its_value(session, path, old, prop
         changed.append(1)
 
     rows: Any = SimpleNamespace(page=page, changed=change)
-    asyncio.run(studies._Rows._proposed(rows, path, fields))
+    asyncio.run(studies._Rows._propose(rows, path, fields))
     speed = session.project.case("a").value("motion.speed")
     wanted = [f"{share * speed:.3g}" for share in (0.7, 1.3)] if proposed else [old, ""]
     assert [field.value.partition(" ")[0] for field in fields.values()] == [

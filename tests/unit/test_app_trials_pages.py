@@ -215,7 +215,7 @@ def test_a_mark_that_is_moved_is_tried_at_its_time_and_another_step_forgets_it(
 
     async def look(_):
         page = pages[0]
-        await page._moved(SimpleNamespace(args={"time": 1.23456, "id": "contact"}))
+        await page._drag_mark(SimpleNamespace(args={"time": 1.23456, "id": "contact"}))
         pending = page.pending
         revision = page.plot._props["revision"]
         await page.choose_step(1)
@@ -435,7 +435,7 @@ def test_folders_that_arrive_have_the_name_of_what_is_in_them(session):
         for part in parts:
             (folder_ / part).parent.mkdir(parents=True, exist_ok=True)
             (folder_ / part).write_text("x")
-        return trials._Trials._settled(page, "arriving 1")
+        return trials._Trials._settle_folder(page, "arriving 1")
 
     assert settled() == ""
     assert settled("mine/a.csv", "mine/b.csv") == "mine"

@@ -167,6 +167,6 @@ def test_only_who_leads_gives_out_more_and_only_when_a_round_is_over(leads, over
     one = object.__new__(Study)
     one.store = cast(Any, SimpleNamespace(end_round=end_round, stopped=True))
     one._begin_next = lambda: bool(given.append(True)) or True
-    assert list(one._claimed(leads, lambda text: None)) == []
+    assert list(one._claim_jobs(leads, lambda text: None)) == []
     assert len(asked) == leads
     assert len(given) == begun

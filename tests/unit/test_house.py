@@ -245,6 +245,12 @@ def test_a_public_class_has_its_name_alone():
     assert {name: where for name, where in homes.items() if len(where) > 1} == {}
 
 
+LONE = re.compile(
+    r"(?!_read$)_?([a-z]+ed|told|made|drawn|found|shown|given|chosen|read|written|held|known|taken"
+    r"|built|laid|left|begun|fallen)"
+)
+
+
 def test_no_function_of_a_module_is_a_lone_participle():
     """Jobs of a project on disk name those of the app's work; plug-ins import ``required``."""
     lone = [
@@ -252,14 +258,25 @@ def test_no_function_of_a_module_is_a_lone_participle():
         for name, path in files().items()
         if not re.fullmatch(r"underfoot\.app\.work(_studies|_table)?", name)
         for node in tree(path).body
-        if isinstance(node, ast.FunctionDef)
-        and re.fullmatch(
-            r"(?!_read$)_?([a-z]+ed|told|made|drawn|found|shown|given|chosen|read|written|held|known|taken"
-            r"|built|laid|left|begun|fallen)",
-            node.name,
-        )
+        if isinstance(node, ast.FunctionDef) and LONE.fullmatch(node.name)
     ]
     assert lone == ["underfoot.case.quantity.required"]
+
+
+def test_no_method_that_others_do_not_call_is_a_lone_participle():
+    """What a property holds may be named by one: ``self._drawn``."""
+    lone = [
+        f"{name}.{kind.name}.{node.name}"
+        for name, path in files().items()
+        for kind in nodes(path)
+        if isinstance(kind, ast.ClassDef)
+        for node in kind.body
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        and node.name.startswith("_")
+        and LONE.fullmatch(node.name)
+        and not any("property" in ast.unparse(each) for each in node.decorator_list)
+    ]
+    assert lone == []
 
 
 def test_names_of_functions_parameters_and_fields_say_what_they_are():

@@ -65,7 +65,7 @@ class Gate:
             cookie = f"{self._cookie}={self._token}; HttpOnly; SameSite=Strict; Path=/"
             further = [("location", f"/{place}"), ("set-cookie", cookie)]
             await _refuse(scope, send, 303, "", further)
-        elif not self._has_token(self._given(headers)):
+        elif not self._has_token(self._token_of(headers)):
             message = (
                 "Open the address that the terminal shows where the app was started: it ends with "
                 "a key that is yours alone."
@@ -91,7 +91,7 @@ class Gate:
         origin = headers.get("origin")
         return port == self._port and origin in (None, f"http://{host}")
 
-    def _given(self, headers: dict[str, str]) -> str:
+    def _token_of(self, headers: dict[str, str]) -> str:
         try:
             morsel = SimpleCookie(headers.get("cookie", "")).get(self._cookie)
         except CookieError:

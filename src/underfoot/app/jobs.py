@@ -71,10 +71,10 @@ class Lane:
         The function is named "module:name", so that this process need not import it. ``heard`` is
         told the job whenever it may have got on. Errors of the function pass through.
         """
-        work = asyncio.ensure_future(self._asked(function, args, options, heard))
+        work = asyncio.ensure_future(self._run_alone(function, args, options, heard))
         return await asyncio.shield(work)  # who asked may leave; the process is not left busy
 
-    async def _asked(
+    async def _run_alone(
         self,
         function: str,
         args: tuple[Any, ...],
@@ -202,7 +202,7 @@ class JobQueue:
         self.tasks[number] = task
         waits = [first and not other.first for other in self._waiting]
         self._waiting.insert(waits.index(True) if True in waits else len(waits), task)
-        self._changed(task)
+        self._write_line(task)
         self._arrived.set()
         return task
 
@@ -268,7 +268,7 @@ class JobQueue:
 
     async def _compute(self, task: QueuedTask) -> None:
         task.state, task.began = RUNNING, time.time()
-        self._changed(task)
+        self._write_line(task)
 
         def heard(job: Job) -> None:
             task.stage, task.fraction = job.stage, job.fraction
@@ -292,9 +292,9 @@ class JobQueue:
     def _end(self, task: QueuedTask, state: str) -> None:
         task.state, task.ended = state, time.time()
         task.fraction = 1.0 if state == DONE else task.fraction
-        self._changed(task)
+        self._write_line(task)
 
-    def _changed(self, task: QueuedTask) -> None:
+    def _write_line(self, task: QueuedTask) -> None:
         line = {name: getattr(task, name) for name in KEPT if getattr(task, name)}
         with suppress(OSError):  # a full disk: the job goes on, after a restart it is interrupted
             append_line(self._file, _move_paths(line, str(self._file.parent), PROJECT))

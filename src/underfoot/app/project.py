@@ -227,19 +227,19 @@ class Project:
     def write(self, name: str, text: str) -> None:
         """Replace the text of a variant."""
         if text != self.text(name):
-            self._noticed(name)
+            self._current_states(name)
             self._set(name, text)
 
     # undo and redo
 
     def can_undo(self, name: str) -> bool:
         """Return whether there is an earlier state."""
-        states = self._noticed(name)
+        states = self._current_states(name)
         return states.at > 0 and states.texts[states.at - 1] is not None
 
     def can_redo(self, name: str) -> bool:
         """Return whether a state was undone."""
-        states = self._noticed(name)
+        states = self._current_states(name)
         return states.at + 1 < len(states.texts) and states.texts[states.at + 1] is not None
 
     def undo(self, name: str) -> None:
@@ -323,7 +323,7 @@ class Project:
             raise InputError(f'there is no variant "{name}"', where="variant", allowed=known)
         return path
 
-    def _noticed(self, name: str) -> _States:
+    def _current_states(self, name: str) -> _States:
         """Return the states of a variant, with what another program wrote as one of them.
 
         Where the history can't be written now (a full disk, a folder to read only) it is tried

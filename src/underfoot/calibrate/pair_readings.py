@@ -117,10 +117,10 @@ class PairCalibration(Presentable):
                 "keeps its own error.",
                 errors=[
                     Message("{name} ({then:.2f} to {now:.2f})", name=name, then=then, now=now)
-                    for name, then, now in self._taken()
+                    for name, then, now in self._smaller_errors()
                 ],
             ),
-            *self._missed(),
+            *self._contradictions(),
         )  # fmt: skip
 
     def cautions(self) -> tuple[Message, ...]:
@@ -135,7 +135,7 @@ class PairCalibration(Presentable):
             for name in self.not_begun
         )
 
-    def _missed(self) -> list[Message]:
+    def _contradictions(self) -> list[Message]:
         """Return each reading that lies outside what all readings together leave."""
         return [
             Message(
@@ -149,7 +149,7 @@ class PairCalibration(Presentable):
             or (reading.kind != "lower" and reading.cof < low)
         ]  # fmt: skip
 
-    def _taken(self) -> list[tuple[str, float, float]]:
+    def _smaller_errors(self) -> list[tuple[str, float, float]]:
         """Return the errors that the readings made smaller, the most first."""
         smaller = [error for error in self.errors if error[2] < 0.95 * error[1]]
         most = max(self.errors, key=lambda each: each[1] ** 2 - each[2] ** 2)

@@ -156,7 +156,7 @@ class ContactTableOption(RoughContactOption):
         # pressures at a modulus of whole tenths of a decade: one table serves draws near to it
         near = 10 ** (round(10 * math.log10(scale)) / 10)
         nodes = np.geomspace(low / near, high / near, count)
-        made = self._made(context, floor.density, shoe.density, nodes, name)
+        made = self._new_table(context, floor.density, shoe.density, nodes, name)
         return made.scaled(1.0, scale, context.motion.speed) if elastic else made
 
     def _self_affine(self, context: Context) -> ContactTable:
@@ -173,13 +173,13 @@ class ContactTableOption(RoughContactOption):
 
         nodes = np.geomspace(*(ELASTIC_PRESSURES if elastic else TABLE_PRESSURES))
         name = f"self-affine interface, Rq {display(rq, 'm')}"
-        made = self._made(context, density, None, nodes, name)
+        made = self._new_table(context, density, None, nodes, name)
         if not elastic:
             return made
         higher, stiffer = rq / ELASTIC_RQ, context.youngs_modulus / ELASTIC_MODULUS
         return made.scaled(higher, higher * stiffer, context.motion.speed)
 
-    def _made(
+    def _new_table(
         self, context: Context, floor: Density, shoe: Density | None, pressure: Array, name: str
     ) -> ContactTable:
         """Return the table of an elastic compound at ``ELASTIC_MODULUS``, of another as it is."""

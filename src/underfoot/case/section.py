@@ -303,10 +303,10 @@ class Option(Section):
     def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         if cls.name:
             return handler(source)
-        return core_schema.with_info_plain_validator_function(cls._validated)
+        return core_schema.with_info_plain_validator_function(cls._validate)
 
     @classmethod
-    def _validated(cls, given: Any, info: ValidationInfo) -> "Option":
+    def _validate(cls, given: Any, info: ValidationInfo) -> "Option":
         return cls.pick(given).model_validate(
             {cls.key: given} if isinstance(given, str) else given, context=info.context
         )

@@ -55,7 +55,7 @@ class Group(TyperGroup):
         """Return a command; the program ends with a sentence where its package is missing."""
         if cmd_name not in self.commands:
             try:
-                if (command := self._offered(cmd_name)) is not None:
+                if (command := self._find_command(cmd_name)) is not None:
                     return command
             except InputError as error:
                 say(f"error: {error}")
@@ -71,12 +71,12 @@ class Group(TyperGroup):
             if name in self.commands or "." in name:
                 continue
             try:
-                self.commands[name] = self._offered(name)
+                self.commands[name] = self._find_command(name)
             except InputError as error:
                 say(f"caution: {error}")
         return super().list_commands(ctx)
 
-    def _offered(self, name: str) -> Any:
+    def _find_command(self, name: str) -> Any:
         """Return a command that another package offers as a function or group, or None."""
         item = find_offer("commands", self._prefix + name)
         if item is None:

@@ -110,7 +110,7 @@ class _Walk:
         elif id(part) in self._open:  # a thing that holds itself
             self._text("up", str(self._open[::-1].index(id(part))))
         elif len(self._open) > DEEPEST:
-            self._unnamed(part)
+            self._add_unnamed(part)
         else:
             self._open.append(id(part))
             self._compound(part)
@@ -159,7 +159,7 @@ class _Walk:
         try:
             made = part.__reduce_ex__(4)
         except Exception:  # whatever another package raises: it can't be read
-            self._unnamed(part)
+            self._add_unnamed(part)
             return
         self._list("object", (cls, attributes(part)))
         if isinstance(made, str):
@@ -169,7 +169,7 @@ class _Walk:
             self._list("made", (function, given, _without_lazy(cls, state)))
             self._list("items", [*(items or ()), *(pairs or ())])
 
-    def _unnamed(self, part: Any) -> None:
+    def _add_unnamed(self, part: Any) -> None:
         self._text("unnamed", _UNNAMED.setdefault(id(part), (part, uuid4().hex))[1])
 
     def _in_code(self, value: Any) -> Any:

@@ -16,10 +16,10 @@ _LEAF_KEYS = frozenset({"value", "uncertainty", "erratum", *INHERITED})
 class FrozenTable(dict[Any, Any]):
     """A table that all who read it share: it can't be changed."""
 
-    def _refused(self, *_given: Any, **_more: Any) -> Never:
+    def _raise_frozen(self, *_given: Any, **_more: Any) -> Never:
         raise InputError("this table is shared by all cases: it can't be changed")
 
-    _refuse: Any = _refused
+    _refuse: Any = _raise_frozen
     __setitem__ = __delitem__ = __ior__ = update = pop = popitem = setdefault = clear = _refuse
 
     def __reduce__(self) -> tuple[Any, ...]:

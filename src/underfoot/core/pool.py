@@ -142,7 +142,7 @@ class _Pool:
 
     def answers(self, items: Iterator[Any], died: Callable[[Any], Any]) -> Iterator[Any]:
         """Yield answers until nothing is left; stop where no worker can be started."""
-        self.workers = [self._started() for _ in range(self.processes)]
+        self.workers = [self._start_worker() for _ in range(self.processes)]
         while True:
             for worker in self.workers:
                 if worker.ready and worker.task is None:
@@ -182,7 +182,7 @@ class _Pool:
             worker.process.join()
         self.workers = []
 
-    def _started(self) -> _Worker:
+    def _start_worker(self) -> _Worker:
         context = multiprocessing.get_context("spawn")
         ours, theirs = context.Pipe()
         # the kernel's signal comes when the thread that started the worker ends: fit for main alone
@@ -216,7 +216,7 @@ class _Pool:
             if task.tries < TRIES:
                 self.again.append(task)
         if self.lost_before_ready <= self.processes:
-            self.workers.append(self._started())
+            self.workers.append(self._start_worker())
         if task is not None and task.tries >= TRIES:
             yield died(task.item)
 

@@ -111,10 +111,10 @@ class Worker:
                     job.stage, job.fraction, job.residual = content
                     seconds = 0.0
                     continue
-                return self._ended(kind, content)
+                return self._end(kind, content)
         except (EOFError, OSError):
             self._restart()
-            return self._ended("error", UnderfootError("the worker process died"))
+            return self._end("error", UnderfootError("the worker process died"))
         return None
 
     def wait(self, job: Job) -> Any:
@@ -133,7 +133,7 @@ class Worker:
             ended = self.poll()
         if ended is None:
             self._restart()
-            ended = self._ended("error", Cancelled("stopped"))
+            ended = self._end("error", Cancelled("stopped"))
         return ended
 
     def close(self) -> None:
@@ -142,7 +142,7 @@ class Worker:
         self._process.join()
         self._pipe.close()
 
-    def _ended(self, kind: str, content: Any) -> Job:
+    def _end(self, kind: str, content: Any) -> Job:
         job, self._job = self._job, None
         assert job is not None
         job.done = True

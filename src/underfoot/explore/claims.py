@@ -93,7 +93,7 @@ class Round:
                 path, owners = self._owners(block)
                 if owners[-1] == self._name or alive(owners[-1], None if owners[-1] else path):
                     continue
-                if self._claimed(f"{block}-{len(owners)}"):
+                if self._claim(f"{block}-{len(owners)}"):
                     return block, self._jobs(block), owners
         return None
 
@@ -103,12 +103,12 @@ class Round:
         while self._free and refused < REFUSED:
             place = 0 if in_order else random.randrange(min(len(self._free), LARGEST))
             block = self._free.pop(place)
-            if self._claimed(str(block)):
+            if self._claim(str(block)):
                 return block
             refused += 1
         return None
 
-    def _claimed(self, name: str) -> bool:
+    def _claim(self, name: str) -> bool:
         """Return whether this process makes the file of a name: no other has. Its own goes in."""
         try:
             descriptor = os.open(self.folder / name, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)

@@ -105,7 +105,7 @@ class Records(Mapping[str, Record]):
         known = ((self._places.get(key), k) for k, key in enumerate(keys))
         places = sorted((place >> 3, k) for place, k in known if place is not None)
         for number, some in groupby(places, lambda one: one[0] >> 48):
-            with self._opened(self._files[number]) as (line_at, draws_at):
+            with self._open(self._files[number]) as (line_at, draws_at):
                 for place, k in some:
                     if (body := line_at(place & AT)) is not None:
                         yield k, body, draws_at
@@ -218,14 +218,14 @@ class Records(Mapping[str, Record]):
 
     def _read(self, place: int) -> Record:
         path = self._files[place >> 48]
-        with self._opened(path) as (line_at, draws_at):
+        with self._open(path) as (line_at, draws_at):
             body = line_at(place & AT)
             if body is None:
                 raise _damage_error(path)
             return Record.from_line(body, draws_at)
 
     @contextmanager
-    def _opened(self, path: Path) -> Iterator[tuple[Callable[[int], bytes | None], DrawsAt]]:
+    def _open(self, path: Path) -> Iterator[tuple[Callable[[int], bytes | None], DrawsAt]]:
         """Yield what reads a line of a file at its place, and what reads the draws of a line."""
         if path.suffix == ".npz":
             lines, draws = self._packed(path)

@@ -343,7 +343,7 @@ class Store:
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
         try:
             locked = _lock_file(descriptor)
-            if locked is False or (locked is None and not self._claimed(claim)):
+            if locked is False or (locked is None and not self._claim(claim)):
                 yield False
                 return
             os.ftruncate(descriptor, 0)
@@ -355,7 +355,7 @@ class Store:
                 if claim.read_text(encoding="utf-8") == self.name:
                     claim.unlink()
 
-    def _claimed(self, path: Path) -> bool:
+    def _claim(self, path: Path) -> bool:
         """Return whether this process has a claim: nobody else has it, or who had it is dead."""
         try:
             descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)

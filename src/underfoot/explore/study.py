@@ -102,7 +102,7 @@ class Study:
                 )
             self.store.go_on()
             self.store.adopt(self.plan)
-            compute, count = engine(on, workers, self._told(progress))
+            compute, count = engine(on, workers, self._waiting_line(progress))
             self._compute(compute, count, progress, leads=True)
         return self.result()
 
@@ -119,7 +119,7 @@ class Study:
                 latest = self.store.round
                 if latest is None or not len(latest.places):
                     self._begin_next()  # not begun, or finished: is every case still there?
-        compute, count = engine(None, workers, self._told(progress))
+        compute, count = engine(None, workers, self._waiting_line(progress))
         return self._compute(compute, count, progress, leads=False)
 
     def compute_some(self, count: int, progress: Progress = silent) -> None:
@@ -143,7 +143,7 @@ class Study:
         sessions = self.store.sessions() if self.store.exists else []
         return StudyResult(self.plan, self.store.jobs(), self.store.records(), sessions)
 
-    def _told(self, progress: Progress) -> Callable[[str], None]:
+    def _waiting_line(self, progress: Progress) -> Callable[[str], None]:
         """Return what takes in why the study waits."""
         return lambda text: progress(text, self.store.share)
 
@@ -153,7 +153,7 @@ class Study:
         with self.store.working(workers):
             try:
                 for record in compute(
-                    function, self._claimed(leads, self._told(progress)), crash_record
+                    function, self._claim_jobs(leads, self._waiting_line(progress)), crash_record
                 ):
                     self.store.add_record(record)
                     count += 1
@@ -164,7 +164,7 @@ class Study:
                 raise type(stop)(kept) from None
         return count
 
-    def _claimed(self, leads: bool, told: Callable[[str], None]) -> Iterator[CaseJob | None]:
+    def _claim_jobs(self, leads: bool, told: Callable[[str], None]) -> Iterator[CaseJob | None]:
         """Yield jobs that nobody else computes; None while the last ones of a batch run."""
         if leads and self.store.end_round():
             self._begin_next()
@@ -187,10 +187,10 @@ class Study:
                 if waited >= PATIENCE and (other := self.store.other):
                     told(f"Waiting for {other}: taken over after {SILENT / 60:.0f} min of silence")
                 pause = min(2 * pause, LONGEST_PAUSE)
-            elif not self._advanced(latest, leads):
+            elif not self._advance(latest, leads):
                 return
 
-    def _advanced(self, ended: Round | None, leads: bool) -> bool:
+    def _advance(self, ended: Round | None, leads: bool) -> bool:
         """Return whether the study goes on after a round, and begin the next where none has."""
         if ended is not None and not len(ended.places):
             return False

@@ -159,13 +159,13 @@ class FaceMatrix(NamedTuple):
 
     def columns(self, factor: Array) -> FaceMatrix:
         """Return the matrix with its columns times a factor (count,)."""
-        return self._scaled(factor, factor[self.faces.ahead], factor[self.faces.behind])
+        return self._scale(factor, factor[self.faces.ahead], factor[self.faces.behind])
 
     def rows(self, factor: Array) -> FaceMatrix:
         """Return the matrix with its rows times a factor (count,)."""
-        return self._scaled(factor, factor[self.faces.behind], factor[self.faces.ahead])
+        return self._scale(factor, factor[self.faces.behind], factor[self.faces.ahead])
 
-    def _scaled(self, centre: Array, ahead: Array, behind: Array) -> FaceMatrix:
+    def _scale(self, centre: Array, ahead: Array, behind: Array) -> FaceMatrix:
         diagonal = self.diagonal * centre
         return FaceMatrix(self.faces, diagonal, self.to_ahead * ahead, self.to_behind * behind)
 

@@ -60,11 +60,11 @@ class DesignedSole:
         height = np.where(whole.inside, whole.clearance, np.nan)
         everywhere = slice(0, whole.x.size), slice(0, whole.y.size)
         return DrawnSole(
-            whole.x, whole.y, whole.spacing, height, self._pressed(whole), whole.land,
+            whole.x, whole.y, whole.spacing, height, self._pressed_heights(whole), whole.land,
             everywhere, everywhere,
         )  # fmt: skip
 
-    def _pressed(self, whole: SoleMap) -> Floats | None:
+    def _pressed_heights(self, whole: SoleMap) -> Floats | None:
         """Return the heights under load: those of the design, moved as the solver's cells are."""
         from scipy.ndimage import distance_transform_edt, map_coordinates
 

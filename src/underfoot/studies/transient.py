@@ -149,11 +149,11 @@ class _March:
 
     def _contact(self, height: np.ndarray, guess: np.ndarray) -> ContactState:
         if self.pressure is not None:
-            return self._loaded(height, guess, self.pressure / self.unit)
+            return self._press(height, guess, self.pressure / self.unit)
         assert self.separation is not None
         return self._at_height(height, guess, self.separation / self.rms)
 
-    def _loaded(self, height: np.ndarray, guess: np.ndarray, mean: float) -> ContactState:
+    def _press(self, height: np.ndarray, guess: np.ndarray, mean: float) -> ContactState:
         guess = guess * np.float32(mean / max(float(guess.mean()), 1e-30))
         search = Search(self.tolerance, max_steps=40, exact=False)
         batch = height[None], guess[None], [mean]
@@ -169,7 +169,7 @@ class _March:
             return ContactState(zero, goal - height, 0, 0.0, True, [])
         mean = max(float(guess.mean()), 1e-6)
         before: tuple[float, float] | None = None
-        state = self._loaded(height, guess, mean)
+        state = self._press(height, guess, mean)
         for _ in range(30):
             miss = _separation(state, height, self.operators) - goal
             if abs(miss) < 10.0 * self.tolerance:
@@ -179,7 +179,7 @@ class _March:
             before = (here, miss)
             change = np.clip(-miss / min(slope, -0.05), -1.5, 1.5)
             mean *= float(np.exp(change))
-            state = self._loaded(height, np.asarray(state.pressure, np.float32), mean)
+            state = self._press(height, np.asarray(state.pressure, np.float32), mean)
         self.failures += 1
         return state
 

@@ -292,9 +292,9 @@ class _Answer:
                 words = self.text("answer.risk", share=percent(probability))
             if interval:
                 words += f" ({self.text('answer.interval', low=low, high=high)})"
-        return words + self._extrapolated(answer)
+        return words + self._extrapolation_note(answer)
 
-    def _extrapolated(self, answer: Mapping[str, Any]) -> str:
+    def _extrapolation_note(self, answer: Mapping[str, Any]) -> str:
         return f" ({self.text('answer.extrapolated')})" if answer.get("extrapolated") else ""
 
     # previews
@@ -307,9 +307,11 @@ class _Answer:
                 kind = "strong" if name == "preview" else "soft"
                 ui.label("").classes(kind).props(f'data-live={name} aria-live="polite"')
             self.behind = ui.element("div")
-        sliders(self.session, LIVE, self.case, self._moved, self._rested, self.view, keep=False)
+        sliders(
+            self.session, LIVE, self.case, self._preview, self._start_tried, self.view, keep=False
+        )
 
-    async def _moved(self, changes: dict[str, Any]) -> dict[str, Any]:
+    async def _preview(self, changes: dict[str, Any]) -> dict[str, Any]:
         path = str(self.session.project.path(self.name))
         self.preview_cof = 0.0
         try:
@@ -333,7 +335,7 @@ class _Answer:
         }
         return {"texts": message, "html": answer["html"]}
 
-    def _rested(self, changes: dict[str, Any]) -> None:
+    def _start_tried(self, changes: dict[str, Any]) -> None:
         """Start the full run of what the preview shows; give an earlier one up."""
         path = str(self.session.project.path(self.name))
         self.changes = changes
@@ -463,7 +465,7 @@ class _Answer:
             before=self._chance(slip, now["slip_probability"].get("interval")),
             after=self._chance(each["slip_probability"], each.get("slip_interval")),
         )
-        message += self._extrapolated(each)
+        message += self._extrapolation_note(each)
         return message.replace(" %", "\u00a0%")  # a narrow column must not part number and unit
 
     def _chance(self, probability: float, interval: Sequence[float] | None) -> str:

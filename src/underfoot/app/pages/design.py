@@ -147,7 +147,7 @@ class _Design:
         """Draw the sole of the file."""
 
         async def drawn() -> None:
-            answer = await self._drawn({})
+            answer = await self._draw({})
             self.session.jobs.warm()
             self.view.show(answer["html"])
             ui.run_javascript(f"showTexts({as_json(answer['texts'])})")
@@ -175,7 +175,7 @@ class _Design:
             pattern = ui.select(patterns, label=self.text("design.pattern"))
             pattern.value = case.value("shoe.tread.pattern")
             pattern.props("dense outlined options-dense")
-            pattern.on_value_change(lambda event: self.change(self._patterned(event.value)))
+            pattern.on_value_change(lambda event: self.change(self._pattern_changes(event.value)))
         self._choice(
             "shoe.material",
             self._entries("material", case.catalogue),
@@ -199,7 +199,7 @@ class _Design:
         sole_file.build(self.session, self.name, self.view, self.fill)
         measured_file.build(self.session, self.name, "sole", self.fill)
 
-    def _patterned(self, pattern: str) -> dict[str, Any]:
+    def _pattern_changes(self, pattern: str) -> dict[str, Any]:
         """Return a pattern with what it lacks, or with all of its own where lugs don't suit it."""
         case = self.session.project.case(self.name)
         usual = {f"shoe.tread.{key}": value for key, value in usual_tread(pattern).items()}
@@ -217,9 +217,9 @@ class _Design:
 
     async def _moving(self, changes: dict[str, Any]) -> dict[str, Any]:
         self.moved = monotonic()  # a slider that is held is not taken away
-        return await self._drawn(changes)
+        return await self._draw(changes)
 
-    async def _drawn(self, changes: dict[str, Any]) -> dict[str, Any]:
+    async def _draw(self, changes: dict[str, Any]) -> dict[str, Any]:
         path = str(self.session.project.path(self.name))
         answer = await self.session.ask("underfoot.app.work:sole", path, changes)
         measures = self.text("design.measures", **answer["measures"])

@@ -131,7 +131,7 @@ class _Study:
                     with ui.tab_panel(made[1]):
                         self.editor = ui.textarea(value=self.written()).classes("study-file")
                         self.editor.props("autogrow outlined spellcheck=false")
-                        self.editor.on("blur", self._edited)
+                        self.editor.on("blur", self._take_text)
             with ui.element("section").classes("study-results"):
                 self.checked = ui.element("div").props('role="status"')
                 self.progress = ui.element("div")
@@ -262,7 +262,7 @@ class _Study:
             document[section] = value
         await self._write(tomlkit.dumps(document))
 
-    async def _edited(self) -> None:
+    async def _take_text(self) -> None:
         text = self.editor.value or ""
         if text != self.written():
             await self._write(text)
@@ -447,7 +447,7 @@ class _Rows:
 
             self._keep(row, read)
             fields |= {key: self._field(key, shown[key]) for key in FIELDS[self.section]}
-            choice.on_value_change(lambda: self._proposed(choice.value, fields))
+            choice.on_value_change(lambda: self._propose(choice.value, fields))
 
     def _keep(self, row: ui.element, read: Callable[[], tuple[str, Any]]) -> None:
         """Count a row, and show the button that removes it."""
@@ -473,7 +473,7 @@ class _Rows:
             made.on("keydown.enter", self.changed)
         return made.props("dense outlined").classes(f"study-{key}")
 
-    async def _proposed(self, path: str, fields: Mapping[str, Any]) -> None:
+    async def _propose(self, path: str, fields: Mapping[str, Any]) -> None:
         """Propose a range about the value of the base, where the path is new."""
         variant = (await self.page.session.ask(f"{WORK}:form", self.page.written())).get("base", "")
         name = str(variant).removeprefix("../variants/").removesuffix(".toml")

@@ -71,7 +71,7 @@ class _Trials:
         arriving = ARRIVING + secrets.token_hex(4)
 
         def arrived(event: GenericEventArguments) -> None:
-            name = self._settled(arriving)
+            name = self._settle_folder(arriving)
             if name:
                 self.open(name)
             for words in event.args["refused"][:5]:
@@ -136,7 +136,7 @@ class _Trials:
             there = f"location.pathname + location.search === {target}"
             ui.run_javascript(f"{there} || history.pushState(null, '', {target})")
 
-    def _settled(self, arriving: str) -> str:
+    def _settle_folder(self, arriving: str) -> str:
         """Give a folder that has arrived its name; a folder in it alone is the folder meant."""
         inside = self.session.project.inside
         folder = inside("trials", arriving)

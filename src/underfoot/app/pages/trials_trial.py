@@ -70,7 +70,7 @@ class TrialView:
             self.whole.on("chosen", lambda e: self.choose_step(e.args))
         self.bar = ui.element("div").classes("edit-bar").props('aria-live="polite"')
         if view["plot"]:
-            self.plot = TrialPlot(session).on("moved", self._moved)
+            self.plot = TrialPlot(session).on("moved", self._drag_mark)
         self.log = ui.element("div")
         self._fill(view)
 
@@ -130,12 +130,12 @@ class TrialView:
                 chip.props("flat no-caps dense")
                 chip.props(f'aria-pressed="{str(step["number"] == view["chosen"]).lower()}"')
 
-    def _chosen(self) -> dict[str, Any] | None:
+    def _chosen_step(self) -> dict[str, Any] | None:
         return next((s for s in self.view["steps"] if s["number"] == self.view["chosen"]), None)
 
     def _edit_bar(self) -> None:
         """Show the chosen step and what may be done with it, or the edit that lacks a reason."""
-        step = self._chosen()
+        step = self._chosen_step()
         if self.pending is not None:
             self._reason()
             return
@@ -199,23 +199,23 @@ class TrialView:
                 take.on_click(partial(self._keep_edit, {"step": number, "what": "take back"}))
                 take.props("flat no-caps dense")
 
-    async def _moved(self, event: GenericEventArguments) -> None:
+    async def _drag_mark(self, event: GenericEventArguments) -> None:
         value = f"{event.args['time']:.4f} s"
         await self.tried({"step": self.view["chosen"], "what": event.args["id"], "value": value})
 
     async def tried(self, change: dict[str, Any]) -> None:
         """Show what an edit would do; it is not written."""
-        if await self._answered(change, keep=False):
+        if await self._ask_change(change, keep=False):
             self.pending = change
             self._fill(self.view)
 
     async def _keep_edit(self, change: dict[str, Any]) -> None:
-        if await self._answered(change, keep=True):
+        if await self._ask_change(change, keep=True):
             self.study.done.append((self.view["before"], self.view["after"]))
             self.pending, self.study.undone = None, []
             self._fill(self.view)
 
-    async def _answered(self, change: dict[str, Any], *, keep: bool) -> bool:
+    async def _ask_change(self, change: dict[str, Any], *, keep: bool) -> bool:
         arguments = self.study.asked, self.view["file"], self.view["chosen"]
         options = {"change": change, "keep": keep}
         try:

@@ -124,13 +124,13 @@ class ShiftedMap:
 
     def at(self, distance: float) -> AnyArray:
         """Return the heights at x + ``distance``."""
-        return np.fft.irfft2(self._moved(distance), s=self._shape)
+        return np.fft.irfft2(self._moved_spectrum(distance), s=self._shape)
 
     def slope_at(self, distance: float) -> AnyArray:
         """Return the slope along axis 0 at x + ``distance``."""
-        return np.fft.irfft2(self._moved(distance) * 1j * self._odd, s=self._shape)
+        return np.fft.irfft2(self._moved_spectrum(distance) * 1j * self._odd, s=self._shape)
 
-    def _moved(self, distance: float) -> AnyArray:
+    def _moved_spectrum(self, distance: float) -> AnyArray:
         # the Nyquist wave, whose odd wave number is 0, has no direction: only in phase
         phase = np.exp(1j * self._odd * distance) * np.cos((self._qx - self._odd) * distance)
         return self._spectrum * phase

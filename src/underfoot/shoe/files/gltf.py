@@ -193,7 +193,7 @@ class _Asset:
             return np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
         packed = primitive.get("extensions", {}).get(_DRACO)
         if packed is not None:
-            vertices, order = self._unpacked(packed, self.json["accessors"][attributes["POSITION"]])
+            vertices, order = self._unpack(packed, self.json["accessors"][attributes["POSITION"]])
         else:
             vertices = self._accessor(attributes["POSITION"])
             order = np.arange(vertices.shape[0])
@@ -218,7 +218,7 @@ class _Asset:
             )
         return vertices, faces
 
-    def _unpacked(self, packed: dict[str, Any], shape: dict[str, Any]) -> tuple[Array, Any]:
+    def _unpack(self, packed: dict[str, Any], shape: dict[str, Any]) -> tuple[Array, Any]:
         """Return vertices and indices that Draco packed, which come as triangles."""
         draco = optional_module("DracoPy", "cad", f"Reading the extension {_DRACO}")
         try:

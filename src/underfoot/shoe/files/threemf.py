@@ -320,7 +320,7 @@ class _Package:
             )
         assert state == COMPLETE
 
-    def _listed(self, mesh: Any, what: str, lists: list[np.ndarray], part: str) -> Array:
+    def _read_list(self, mesh: Any, what: str, lists: list[np.ndarray], part: str) -> Array:
         """Return the numbers of a mesh's vertices or triangles."""
         tag, names = _LISTS[what]
         whole = mesh.find(f"{{{_CORE}}}{what}")
@@ -382,8 +382,8 @@ class _Package:
         vertices, faces = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
         placed: list[tuple[Key, Array]] = []
         if mesh is not None:
-            vertices = self._listed(mesh, "vertices", lists, part)
-            numbers = self._listed(mesh, "triangles", lists, part)
+            vertices = self._read_list(mesh, "vertices", lists, part)
+            numbers = self._read_list(mesh, "triangles", lists, part)
             faces = numbers.astype(np.int32)
             if not np.array_equal(faces, numbers):
                 raise self._error(

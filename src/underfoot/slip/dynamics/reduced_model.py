@@ -131,7 +131,7 @@ class ReducedSole:
             )
         times = np.linspace(0.0, history.duration, math.ceil(history.duration / step) + 1)
         normals, drives, angles = walker.demands(times)
-        out = self._carried(
+        out = self._carry_slip(
             times,
             normals,
             drives,
@@ -182,7 +182,7 @@ class ReducedSole:
                 where="reduced model",
                 remedy="Take the full model (slip_study with full=True, SoleFoot)",
             )
-        out = self._carried(
+        out = self._carry_slip(
             motion.time,
             motion.normal,
             motion.drive,
@@ -223,7 +223,7 @@ class ReducedSole:
                 )
         return tuple(found)
 
-    def _carried(
+    def _carry_slip(
         self,
         times: Array,
         normals: Array,
