@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from fastapi import FastAPI
 from nicegui import ui
 
 from page_session import answering, button, computed, pages_shown, press, session_of_a_variant
@@ -196,3 +197,14 @@ def test_the_server_of_pages_is_set_up(monkeypatch, session):
         "binding_refresh_interval": None, "show_welcome_message": False,
     }  # fmt: skip
     assert serve.pages_app.config.quasar_config["loadingBar"]["skipHijack"] is True
+
+
+def test_the_gate_stands_before_the_application_with_its_secret():
+    from underfoot.app import serve
+    from underfoot.app.gate import Gate
+
+    made = serve._server(application := FastAPI(), "secret", 8123, "machine")
+    assert vars(made.config.app) == vars(
+        Gate(application, "secret", 8123, serve.MOST_BYTES, "machine")
+    )
+    assert (made.config.log_level, made.config.lifespan) == ("warning", "on")
