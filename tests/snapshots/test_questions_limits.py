@@ -692,3 +692,17 @@ def test_what_is_known_of_many_cases_is_told_at_once(monkeypatch, tmp_path):
     assert heard[0] == 0.5
     assert heard[-1] == 1.0
     assert outcomes.outcomes([]) == []
+
+
+def test_outcomes_that_shall_not_be_taken_from_the_disk_are_computed(monkeypatch, tmp_path):
+    monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path))
+    asked: list[str] = []
+
+    def run(case, *, quick):
+        asked.append(case.name)
+        return made.result(case.name)
+
+    monkeypatch.setattr(outcomes, "run", run)
+    for cached, times in ((False, 1), (True, 2), (True, 2), (False, 3), (True, 3)):
+        outcomes.outcomes([made.CASE, made.CASE], cached=cached)
+        assert len(asked) == times
