@@ -597,6 +597,27 @@ def test_open_inputs_of_cases(file_regression):
     held(file_regression, told)
 
 
+def test_a_sensitivity_has_the_case_itself_in_its_middle(monkeypatch):
+    asked: list[Any] = []
+
+    def outcomes_of(cases, **options):
+        asked.append([case.value("motion.speed") for case in cases])
+        return [made.outcome(0.1 + 0.01 * at) for at in range(len(cases))]
+
+    monkeypatch.setattr(sensitivity, "outcomes", outcomes_of)
+    inputs = [sensitivity.OpenInput("motion.speed", 2.0, "r", ratio=True),
+              sensitivity.OpenInput("motion.speed", 0.1, "s")]  # fmt: skip
+    case = TREADED.replace("motion.speed", "0.4 m/s")
+    one = sensitivity.sensitivity(case, inputs=inputs, quick=False)
+    assert asked[0] == pytest.approx([0.4, 0.2, 0.8, 0.3, 0.5])
+    assert one.nominal.number("cof") == pytest.approx(0.1)
+    ends = [[each.low.number("cof"), each.high.number("cof")] for each in one.effects]
+    assert ends == [pytest.approx([0.11, 0.12]), pytest.approx([0.13, 0.14])]
+    assert [(each.low_value, each.high_value) for each in one.effects] == [
+        pytest.approx((0.2, 0.8)), pytest.approx((0.3, 0.5))]  # fmt: skip
+    assert not one.quick
+
+
 # changes beside a march
 
 

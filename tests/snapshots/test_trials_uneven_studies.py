@@ -21,7 +21,6 @@ from underfoot.trials.study.study_guard import guarded_files, study_doubts
 CASES = {
     "gait, one trial": ("gait", lambda: made.gait_files(6, 1, seed=22), 0.0, {"equivalence": 0.2}),
     "gait, two persons": ("gait", lambda: made.gait_files(2, 3, seed=23), 0.1, {}),
-    "slips, some lost": ("slips", lambda: made.slip_files(5, seed=24), 0.1, {}),
     "slips, three soles": (
         "slips", lambda: made.slip_files(4, seed=25, outsoles=("hard", "soft", "worn")), 0.0, {}
     ),
