@@ -1,6 +1,7 @@
 """Studies of slips whose runs are made by hand: who is fitted, tested and shown, areas, markers."""
 
 import math
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,6 +12,7 @@ from underfoot.core import ConvergenceError, Status
 from underfoot.core.progress import silent
 from underfoot.slip.dynamics import Population, study
 from underfoot.slip.dynamics.full_model import pressed_area
+from underfoot.slip.dynamics.motion import _new_speed
 from underfoot.slip.dynamics.recorded import (
     _toe_of,
     _walking_speed,
@@ -205,3 +207,52 @@ def test_a_walking_speed_is_that_of_somebody_who_walks(velocity, speed):
     found = _walking_speed(walk, stance)
     assert found is None if speed is None else found == pytest.approx(speed)
     assert asked == [("p", 1.0, 1.6)]
+
+
+@dataclass
+class Rubs:
+    """A foot whose friction is a law of its speed; how often it was asked."""
+
+    law: Any
+    asked: int = 0
+
+    def friction(self, speed: float) -> float:
+        self.asked += 1
+        return float(self.law(speed))
+
+
+LAWS: dict[str, tuple[Any, int]] = {
+    "falls at once": (lambda v: 150 * math.exp(-v / 0.02), 3),
+    "falls": (lambda v: 150 / (1 + 4 * v), 9),
+    "rises": (lambda v: 100 * v**0.2, 9),
+    "rises late": (lambda v: 90 + 400 * v**4, 10),
+    "steps": (lambda v: 40 + 80 * math.tanh(40 * (v - 0.5)), 14),
+}
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_the_speed_after_a_step_is_the_root_of_its_balance_found_in_few_steps(name):
+    """V = speed + share (net + drive - FF(V)): the Illinois form halves the end that stays."""
+    from scipy.optimize import brentq
+
+    law, most = LAWS[name]
+    foot: Any = Rubs(law)
+    speed, share, net, drive = 0.4, 4e-3, 30.0, 90.0
+    made, friction = _new_speed(foot, speed, share, net, drive)
+    exact = brentq(
+        lambda v: v - speed - share * (net + drive - law(v)), 0, 2, xtol=1e-14, rtol=1e-14
+    )
+    assert made == pytest.approx(exact, abs=1e-10)
+    assert friction == pytest.approx(law(exact))
+    assert foot.asked == most
+
+
+def test_a_foot_at_rest_stays_where_friction_bears_what_drives_it():
+    assert _new_speed(Rubs(lambda v: 100.0), 0.0, 4e-3, 50.0, 80.0) == (0.0, 80.0)
+    assert _new_speed(Rubs(lambda v: 100.0), 0.0, 4e-3, 50.0, -5.0) == (0.0, 0.0)
+    # it starts where it does not, and what drives it backward is none
+    speed, friction = _new_speed(Rubs(lambda v: 100.0), 0.0, 4e-3, -50.0, 120.0)
+    assert (speed, friction) == pytest.approx((4e-3 * 20, 100.0))
+    # a slow one is stopped within the step
+    assert _new_speed(Rubs(lambda v: 100.0), 0.01, 4e-3, -30.0, 60.0) == (0.0, 60.0)
+    assert _new_speed(Rubs(lambda v: 100.0), 0.01, 4e-3, -300.0, 160.0) == (0.0, 100.0)
