@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -12,12 +12,15 @@ from underfoot.core import ConvergenceError, Status
 from underfoot.core.progress import silent
 from underfoot.slip.dynamics import Population, study
 from underfoot.slip.dynamics.full_model import pressed_area
+from underfoot.slip.dynamics.gait import history_from_lines
 from underfoot.slip.dynamics.motion import _new_speed
+from underfoot.slip.dynamics.observation import _pulses
 from underfoot.slip.dynamics.recorded import (
     _toe_of,
     _walking_speed,
     heel_over_floor,
 )
+from underfoot.slip.dynamics.reduced_model import FittedRange, ReducedSole
 
 
 def runs_of(states: str) -> list[Any]:
@@ -256,3 +259,53 @@ def test_a_foot_at_rest_stays_where_friction_bears_what_drives_it():
     # a slow one is stopped within the step
     assert _new_speed(Rubs(lambda v: 100.0), 0.01, 4e-3, -30.0, 60.0) == (0.0, 60.0)
     assert _new_speed(Rubs(lambda v: 100.0), 0.01, 4e-3, -300.0, 160.0) == (0.0, 100.0)
+
+
+@pytest.mark.parametrize(("name", "low", "high", "told"), [
+    ("normal", 1.0, 599.0, ()), ("normal", -1.0, 599.0, ("load -1 to 599 N",)),
+    ("normal", 1.0, 601.0, ("load 1 to 601 N",)), ("speed", 0.76, 2.24, ()),
+    ("speed", 0.74, 2.0, ("speed 0.74 to 2 m/s",)), ("speed", 1.0, 2.26, ("speed 1 to 2.26 m/s",)),
+    ("angle", -0.009, 0.289, ()), ("angle", -0.03, 0.2, ("shoe angle -1.72 to 11.5 deg",)),
+])  # fmt: skip
+def test_a_motion_lies_within_the_fit_and_a_quarter_of_its_range(name, low, high, told):
+    """Fitted from 100 to 500 N, from 1 to 2 m/s and from 0.04 to 0.24 rad."""
+    fitted = FittedRange(0.2, (100.0, 500.0), (1.0, 2.0), (0.04, 0.24))
+    sole: Any = SimpleNamespace(fitted=fitted)
+    given = {"normal": 300.0, "speed": 1.5, "angle": 0.1}
+    arrays = {key: np.full(2, value) for key, value in given.items()} | {
+        name: np.array([low, high])
+    }
+    found = ReducedSole._beyond(sole, arrays["normal"], arrays["speed"], arrays["angle"])
+    assert len(found) == len(told)
+    for one, text in zip(found, told, strict=True):
+        assert one.startswith(f"{text} beyond the fit's ")
+    assert ReducedSole._beyond(
+        cast(Any, SimpleNamespace(fitted=None)), *(1e9 * one for one in arrays.values())
+    ) == ()  # fmt: skip
+
+
+def test_a_history_whose_column_has_a_hole_is_one_without_it():
+    lines = ["time_s,normal_per_body_weight,shear_ratio,foot_angle_deg,heel_velocity_m_per_s"]
+    rows = [f"{0.1 * k},{0.5 + 0.1 * k},{0.1 * k},{3 - k},{0.5 - 0.1 * k}" for k in range(5)]
+    whole = history_from_lines([*lines, *rows], "a")
+    assert whole.foot_angle == pytest.approx(np.radians(3 - np.arange(5.0)))
+    assert whole.heel_velocity == pytest.approx(0.5 - 0.1 * np.arange(5))
+    rows[2] = "0.2,0.7,0.2,,0.3"
+    hole = history_from_lines([*lines, *rows], "a")
+    assert hole.foot_angle is None
+    assert hole.heel_velocity == pytest.approx(whole.heel_velocity)
+    assert hole.normal == pytest.approx(whole.normal)
+
+
+def test_a_sensor_that_nothing_passes_reads_its_noise():
+    """Two rows of two sensors: a pulse of 50 kPa over one of the first row alone."""
+    time = np.linspace(0, 0.3, 301)
+    pressures = np.zeros((301, 2, 2))
+    pressures[:, 0, 1] = 5e4 * np.exp(-(((time - 0.15) / 0.02) ** 2))
+    motion: Any = SimpleNamespace(time=time)
+    rows, duration, highest = _pulses(motion, pressures, 3)
+    assert 240 < rows[1] < 5 * 240
+    assert rows[0] == highest == pytest.approx(5e4, rel=0.03)
+    assert duration is not None
+    assert 0.03 < duration < 0.15
+    assert max(_pulses(motion, 0 * pressures, 3)[0]) < 5 * 240
