@@ -346,6 +346,39 @@ def test_series_end_where_the_sole_allows(file_regression):
     })  # fmt: skip
 
 
+def test_shapes_are_worn_in_the_order_of_their_depth(monkeypatch):
+    worn: list[float] = []
+    heard: list[Any] = []
+    monkeypatch.setattr("underfoot.compute.sole.archard_state",
+                        lambda case: worn.append(case.shoe.wear.depth))  # fmt: skip
+    cases: Any = [SimpleNamespace(shoe=SimpleNamespace(wear=SimpleNamespace(depth=depth)))
+                  for depth in (3e-3, 0.0, 1e-3, 2e-3, 0.0, 4e-3)]  # fmt: skip
+    wear._wear_down(cases, lambda stage, share, *more: heard.append((stage, share)))
+    assert worn == [1e-3, 2e-3, 3e-3, 4e-3]
+    assert heard == [("Wearing the sole", share) for share in (0.0, 0.25, 0.5, 0.75)]
+    told = []
+
+    def outcomes_of(plan, **options):
+        options["progress"]("Simulating the worn soles", 0.0)
+        told.append(len(plan))
+        raise RuntimeError("enough")
+
+    monkeypatch.setattr(wear, "outcomes", outcomes_of)
+    worn.clear()
+    heard.clear()
+
+    def hear(stage, share, *_):
+        heard.append((stage, share))
+
+    options: Any = {"steps": 2, "band": False, "progress": hear}
+    for mode, first in (("archard", 0.1), ("plane", 0.0)):
+        assert "enough" in refusal(wear.wear_series, TREADED, mode=mode, **options)
+        assert heard[-1] == ("Simulating the worn soles", pytest.approx(first))
+    assert len(worn) == 2
+    assert heard[:2] == [("Wearing the sole", 0.0), ("Wearing the sole", pytest.approx(0.05))]
+    assert told == [4, 4]
+
+
 def test_sizes_of_a_tread_have_three_figures():
     assert [wear._short(v) for v in (99.94, 100.0, 123.4, -123.4, 0.01234)] == [
         "99.9", "100", "123", "-123", "0.0123"]  # fmt: skip
