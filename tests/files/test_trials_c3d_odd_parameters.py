@@ -9,7 +9,7 @@ from trials_c3d_writing import c3d_bytes
 
 from recording_texts import changes, read_lines
 from snapshot import held
-from underfoot.trials.readers import c3d
+from underfoot.trials.readers import c3d, c3d_writer
 
 FRAMES, SAMPLES = 60, 600
 
@@ -130,3 +130,11 @@ def test_a_damaged_parameter_is_left_out_or_loses_the_file(tmp_path, group, name
     assert ("refused" in lines) == (needed and group in c3d._NEEDED)
     if "refused" not in lines:
         assert any(f"{group}:{name} is left out" in line for line in lines.values())
+
+
+def test_the_unit_of_points_is_one_text_not_a_list():
+    """As the format has it: a text of two letters, of one dimension."""
+    paths = {"LHEE": np.ones((4, 3))}
+    data = c3d_writer.c3d_bytes(paths, 100.0, {}, 1000.0, [])
+    at = data.index(b"UNITS") + len("UNITS") + 2
+    assert (data[at], data[at + 1], data[at + 2], data[at + 3 : at + 5]) == (255, 1, 2, b"mm")

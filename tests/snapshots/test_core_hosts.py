@@ -2,6 +2,7 @@
 
 import errno
 import os
+import stat
 import sys
 from types import SimpleNamespace
 from typing import Any
@@ -12,7 +13,13 @@ import pytest
 from snapshot import refusal
 from underfoot.core import Cancelled, UnderfootError, device, pool, worker
 from underfoot.core.errors import error_text, file_trouble, nearest_match, unknown_name
-from underfoot.core.files import check_writable_folder, named_for, read_toml, whole_file
+from underfoot.core.files import (
+    check_writable_folder,
+    named_for,
+    read_toml,
+    whole_file,
+    whole_folder,
+)
 from underfoot.core.page import LONGEST_NUMBER, MOST_ITEMS, PageSection, page_part
 from underfoot.core.presentation import Table
 
@@ -177,6 +184,12 @@ def test_a_file_that_can_not_be_written_is_named_whole(tmp_path):
     assert write(ValueError("a")) == "None"
     made = named_for(PermissionError(errno.EACCES, "refused", "hidden"), path)
     assert (type(made), made.errno, made.strerror) == (PermissionError, errno.EACCES, "refused")
+
+
+def test_a_folder_that_is_made_whole_may_be_read_by_all(tmp_path):
+    with whole_folder(tmp_path / "a") as staging:
+        (staging / "b").touch()
+    assert stat.S_IMODE((tmp_path / "a").stat().st_mode) == 0o755
 
 
 def test_folders_that_can_not_be_made_say_why(tmp_path, monkeypatch):

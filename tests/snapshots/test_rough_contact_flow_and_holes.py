@@ -18,6 +18,7 @@ from underfoot.rough_contact.contact_table import (
     leave_out_errors,
 )
 from underfoot.rough_contact.flow_factor import FlowFactors, flow_factors
+from underfoot.rough_contact.theory import checked_spectrum
 
 
 @pytest.mark.parametrize("spacing", [1.0, 2e-6, (1.0, 3.0), (5e-6, 2e-6)])
@@ -223,3 +224,15 @@ def test_the_error_of_a_table_is_that_at_the_nodes_that_are_left_out():
                                  ["k"], "d")
     )  # fmt: skip
     assert "2 speed nodes" in refusal(leave_out_errors, made, "speed")
+
+
+def test_a_spectrum_rises_in_steps_of_any_size_from_above_zero():
+    waves, density = 0.25 * (1 + np.arange(8.0)), np.full(8, 1e-12)
+    found, same = checked_spectrum(waves, density)
+    np.testing.assert_array_equal(found, waves)
+    np.testing.assert_array_equal(same, density)
+    assert "do not rise" in refusal(checked_spectrum, waves - 0.25, density)
+    assert "do not rise" in refusal(checked_spectrum, np.maximum(waves, 0.5), density)
+    assert "do not fit" in refusal(checked_spectrum, waves[:7], density[:7])
+    assert "smallest density" in refusal(checked_spectrum, waves, 0 * density)
+    assert "smallest density" in refusal(checked_spectrum, waves, density - 1e-11)
