@@ -168,5 +168,5 @@ def _missing(owner: type[Section] | None, key: str, where: str) -> InputError:
     if owner is not None and issubclass(owner, Option) and "missing" not in stated:
         what = Message('is missing for {key} = "{name}"', key=owner.key, name=owner.name)
     if remedy is None and field is not None and field.description:
-        remedy = f"Give {key}: {field.description}"
-    return InputError(what, where=where, remedy=str(remedy) if remedy else add)
+        remedy = Message("Give {key}: {description}", key=key, description=field.description)
+    return InputError(what, where=where, remedy=remedy or add)

@@ -44,7 +44,10 @@ def positive_array(values: ArrayLike, where: str, *, zero: bool = False) -> Arra
         bound = "of 0 or more" if zero else "above 0"
         what = "an empty array"
         if array.size:
-            what = f"{array[~good].flat[0]:g} is not a finite number {bound}"
+            wrong = array[~good].flat[0]
+            what = Message("{wrong:g} is not a finite number above 0", wrong=wrong)
+            if zero:
+                what = Message("{wrong:g} is not a finite number of 0 or more", wrong=wrong)
         raise InputError(what, where=where, allowed=f"{bound}, in SI")
     return array
 

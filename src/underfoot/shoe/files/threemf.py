@@ -314,10 +314,14 @@ class _Package:
 
     def _check(self, state: int, count: int, tag: str, names: tuple[str, ...], part: str) -> None:
         if state in (MISSING, NO_NUMBER):
-            lacks = "lacks one of" if state == MISSING else "has no number as"
-            raise self._error(
-                f"{tag} {count} of {part} {lacks} {', '.join(names)}, which the format requires"
+            at = {"tag": tag, "number": count, "part": part, "names": names}
+            lacks = Message(
+                "{tag} {number} of {part} lacks one of {names}, which the format requires", **at
             )
+            no_number = Message(
+                "{tag} {number} of {part} has no number as {names}, which the format requires", **at
+            )
+            raise self._error(lacks if state == MISSING else no_number)
         assert state == COMPLETE
 
     def _listed(self, mesh: Any, what: str, lists: list[np.ndarray], part: str) -> Array:
