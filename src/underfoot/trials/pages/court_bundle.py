@@ -177,15 +177,18 @@ def _settings(bundle: Path, faults: Sequence[Remark]) -> dict[str, Any]:
         if not lacking:
             return settings
         reason = Message("wrong or missing: {lacking}", lacking=", ".join(lacking))
-    others = [str(fault) for fault in faults if fault.about != SETTINGS]
+    remedy = Message("Ask for the bundle as it was signed")
+    if others := [fault for fault in faults if fault.about != SETTINGS]:
+        remedy = Message(
+            "{remedy}; not as written are also: {others:; }", remedy=remedy, others=others
+        )
     raise InputError(
         Message("is damaged ({reason}), so nothing can be made again", reason=reason),
         where=str(bundle / SETTINGS),
         allowed=Message(
             "the file that trials bundle wrote, an object with {kinds}", kinds=", ".join(kinds)
         ),
-        remedy="Ask for the bundle as it was signed"
-        + (f"; not as written are also: {'; '.join(others)}" if others else ""),
+        remedy=remedy,
     )
 
 
