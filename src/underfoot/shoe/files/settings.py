@@ -134,7 +134,10 @@ def length_unit(
         )
     likely = _likely(length, width)
     if not likely:
-        lengths = ", ".join(f"{_length(length * unit)} in {name}" for name, unit in UNITS.items())
+        lengths = [
+            Message("{length} in {unit}", length=_length(length * unit), unit=name)
+            for name, unit in UNITS.items()
+        ]
         raise InputError(
             Message(
                 "no unit makes it a sole: its length of {length:.4g} would be {lengths}",

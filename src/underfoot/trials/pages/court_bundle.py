@@ -133,7 +133,13 @@ def changed_files(bundle: Path) -> list[Remark]:
     InputError: the folder is no bundle.
     """
     if not (bundle / SUMS).is_file() or not (bundle / SETTINGS).is_file():
-        raise InputError(f"{bundle} is no bundle: {SUMS} or {SETTINGS} is missing", where="--check")
+        what = Message(
+            "{bundle} is no bundle: {sums} or {settings} is missing",
+            bundle=bundle,
+            sums=SUMS,
+            settings=SETTINGS,
+        )
+        raise InputError(what, where="--check")
     lines = (bundle / SUMS).read_text(encoding="utf-8", errors="replace").splitlines()
     pairs = [line.split("  ", 1) for line in lines]
     written = {pair[1]: pair[0] for pair in pairs if len(pair) == 2}
