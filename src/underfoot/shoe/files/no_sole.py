@@ -170,7 +170,7 @@ def _reason(shape: Shape) -> str | None:
         )
     if width < NARROWEST:
         return Message("it is {size}, narrower than any", size=size)
-    if not width <= WIDEST:
+    if width > WIDEST:
         return Message("it is {size}, wider than any", size=size)
     slender = length / width
     if slender > MOST_SLENDER or (length > _LONG and slender < LEAST_SLENDER):
