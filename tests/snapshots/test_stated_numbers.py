@@ -82,7 +82,7 @@ def of_class(kind: type) -> Iterator[tuple[str, Any]]:
                 yield f".{field.name}", field.default
     for name, field in getattr(kind, "model_fields", {}).items():
         if name in inspect.get_annotations(kind):
-            yield f".{name}", (field.default, field.metadata)
+            yield f".{name}", (field.default, field.metadata, field.json_schema_extra)
     for name, value in list(vars(kind).items()):
         if name.startswith("__") or name in ("model_fields", "model_config"):
             continue

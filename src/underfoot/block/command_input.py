@@ -277,7 +277,7 @@ def _material(given: Mapping[str, Any], path: Path) -> tuple[model.MicroMaterial
         shear = material.power_law_spectrum(modulus, exponent, terms_per_decade=2)
     else:
         shear = material.shear_from_young(
-            material.read_prony(path.parent / str(given["spectrum"])), nu
+            material.read_prony(path.parent / str(given["spectrum"]), poisson_ratio=nu), nu
         )
     at = "equilibrium" if shear.equilibrium_modulus else "instantaneous"
     rubber = model.MicroMaterial.from_poisson(shear, nu, at=at)

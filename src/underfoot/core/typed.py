@@ -113,10 +113,10 @@ def _decimal(digits: str, text: str, usual: str) -> str | None:
                     remedy="Write it without thousands, with the decimal sign of the page",
                 )
             return f"{whole or 0}.{part or 0}"
-        if len(set(signs[:-1])) == 1 and _is_grouped(whole, signs[0]):
+        if _is_grouped(whole, signs[0]):
             return f"{whole.replace(signs[0], '')}.{part or 0}"
         return None
-    if len(set(signs)) == 1 and _is_grouped(digits, last):
+    if _is_grouped(digits, last):
         return digits.replace(last, "")
     return None
 

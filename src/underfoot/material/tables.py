@@ -243,7 +243,7 @@ class FileTable:
         if unit in _PER_SECOND | _PER_MINUTE:
             seconds = 1.0 if unit in _PER_SECOND else 60.0
             return values * ((1.0 if angular else 2.0 * np.pi) / seconds)
-        if written != "MHz" and unit in _CYCLES:
+        if unit in _CYCLES:
             if angular and column.name.casefold() not in ("w", "omega", "ω"):
                 raise DataError(
                     Message(
@@ -254,7 +254,9 @@ class FileTable:
                     allowed="an angular frequency in rad/s or 1/s, a frequency in Hz",
                     remedy="Name the column frequency, or give its unit as rad/s",
                 )
-            return values * (2.0 * np.pi * _CYCLES[unit])
+            # in lower case it is a millihertz
+            cycles = 1e6 if written == "MHz" else _CYCLES[unit]
+            return values * (2.0 * np.pi * cycles)
         return values * _factor(1, written, "rad/s", where)
 
     @property

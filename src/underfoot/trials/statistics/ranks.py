@@ -205,11 +205,11 @@ def _exact_p(ranks: np.ndarray) -> float:
     rows = [sorted(row) for row in (2 * ranks).astype(int).tolist()]
     tables = Counter({(0,) * ranks.shape[1]: 1})
     for row in rows:
-        orders = Counter(permutations(row))
+        orders = set(permutations(row))  # each as often as any other, where ranks are alike too
         longer: Counter[tuple[int, ...]] = Counter()
         for sums, ways in tables.items():
-            for order, times in orders.items():
-                longer[tuple(sorted(map(int.__add__, sums, order)))] += ways * times
+            for order in orders:
+                longer[tuple(sorted(map(int.__add__, sums, order)))] += ways
         tables = longer
     spread = sum(total**2 for total in (2 * ranks).sum(axis=0).astype(int).tolist())
     far = sum(ways for sums, ways in tables.items() if sum(s**2 for s in sums) >= spread)
