@@ -8,11 +8,19 @@ import pytest
 from fastapi import FastAPI
 from nicegui import ui
 
-from page_session import answering, button, computed, pages_shown, press, session_of_a_variant
+from page_session import (
+    answering,
+    button,
+    computed,
+    pages_shown,
+    press,
+    session_of,
+    session_of_a_variant,
+)
 from snapshot import held
 from underfoot.app.frame import open_session
 from underfoot.app.jobs import DONE, INTERRUPTED, RUNNING, JobQueue
-from underfoot.app.pages import PAGES, answer, repair, wear
+from underfoot.app.pages import PAGES, answer, repair, start, wear
 from underfoot.app.project import Project
 from underfoot.app.session import Exchange
 from underfoot.core import InputError
@@ -208,3 +216,26 @@ def test_the_gate_stands_before_the_application_with_its_secret():
         Gate(application, "secret", 8123, serve.MOST_BYTES, "machine")
     )
     assert (made.config.log_level, made.config.lifespan) == ("warning", "on")
+
+
+@pytest.mark.parametrize("kind", ["new", "used", "emptied", "toured"])
+def test_the_tour_opens_by_itself_in_a_new_project_alone(monkeypatch, tmp_path, kind):
+    session = session_of(tmp_path) if kind in ("new", "toured") else session_of_a_variant(tmp_path)
+    if kind == "emptied":
+        session.project.remove("a")
+    seen: list[bool] = []
+
+    cookies = {"toured": "1"} if kind == "toured" else {}
+    request = property(lambda self: SimpleNamespace(cookies=cookies))
+
+    def build():
+        with monkeypatch.context() as patch:
+            patch.setattr(type(ui.context.client), "request", request)
+            start._tour(session)
+
+    async def act(places):
+        elements = places["page"].client.elements.values()
+        seen.extend(one.value for one in elements if isinstance(one, ui.dialog))
+
+    pages_shown(monkeypatch, {"page": build}, act)
+    assert seen == [kind == "new"]

@@ -26,7 +26,7 @@ from underfoot.block._kernels.active_set import (
 )
 from underfoot.block.command_input import MicroCase, micro_case
 from underfoot.block.one_term_fit import fit_single_exponential
-from underfoot.material import RelaxationSpectrum
+from underfoot.material import RelaxationSpectrum, report_elastomer
 
 CIRCLES = (323, 513, 1162, 1538, 1570, 1814, 1959)
 """Seeds of bodies whose wrong nodes change sides for ever when they do so all at once."""
@@ -215,3 +215,13 @@ def test_a_case_takes_its_files_and_units(file_regression, tmp_path, heading, sh
     assert case.material.shear.equilibrium_modulus == pytest.approx(shear)
     assert case.material.bulk_modulus == pytest.approx(2 * shear * 1.48 / (3 * 0.04))
     held(file_regression, [case, case.described()], "case " + heading[9])
+
+
+@pytest.mark.parametrize("ratio", [0.4, 0.499])
+def test_a_rubber_of_the_report_keeps_its_young_s_modulus(tmp_path, ratio):
+    path = tmp_path / "case.toml"
+    path.write_text(f'[material]\nreport = "rubber"\npoisson_ratio = {ratio}\n', encoding="utf-8")
+    shear = micro_case(path).material.shear
+    young = report_elastomer("rubber").modulus
+    assert 2 * (1 + ratio) * shear.equilibrium_modulus == pytest.approx(young.equilibrium_modulus)
+    np.testing.assert_allclose(2 * (1 + ratio) * shear.term_moduli, young.term_moduli)

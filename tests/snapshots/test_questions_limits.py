@@ -346,6 +346,39 @@ def test_series_end_where_the_sole_allows(file_regression):
     })  # fmt: skip
 
 
+def test_shapes_are_worn_in_the_order_of_their_depth(monkeypatch):
+    worn: list[float] = []
+    heard: list[Any] = []
+    monkeypatch.setattr("underfoot.compute.sole.archard_state",
+                        lambda case: worn.append(case.shoe.wear.depth))  # fmt: skip
+    cases: Any = [SimpleNamespace(shoe=SimpleNamespace(wear=SimpleNamespace(depth=depth)))
+                  for depth in (3e-3, 0.0, 1e-3, 2e-3, 0.0, 4e-3)]  # fmt: skip
+    wear._wear_down(cases, lambda stage, share, *more: heard.append((stage, share)))
+    assert worn == [1e-3, 2e-3, 3e-3, 4e-3]
+    assert heard == [("Wearing the sole", share) for share in (0.0, 0.25, 0.5, 0.75)]
+    told = []
+
+    def outcomes_of(plan, **options):
+        options["progress"]("Simulating the worn soles", 0.0)
+        told.append(len(plan))
+        raise RuntimeError("enough")
+
+    monkeypatch.setattr(wear, "outcomes", outcomes_of)
+    worn.clear()
+    heard.clear()
+
+    def hear(stage, share, *_):
+        heard.append((stage, share))
+
+    options: Any = {"steps": 2, "band": False, "progress": hear}
+    for mode, first in (("archard", 0.1), ("plane", 0.0)):
+        assert "enough" in refusal(wear.wear_series, TREADED, mode=mode, **options)
+        assert heard[-1] == ("Simulating the worn soles", pytest.approx(first))
+    assert len(worn) == 2
+    assert heard[:2] == [("Wearing the sole", 0.0), ("Wearing the sole", pytest.approx(0.05))]
+    assert told == [4, 4]
+
+
 def test_sizes_of_a_tread_have_three_figures():
     assert [wear._short(v) for v in (99.94, 100.0, 123.4, -123.4, 0.01234)] == [
         "99.9", "100", "123", "-123", "0.0123"]  # fmt: skip
@@ -597,6 +630,27 @@ def test_open_inputs_of_cases(file_regression):
     held(file_regression, told)
 
 
+def test_a_sensitivity_has_the_case_itself_in_its_middle(monkeypatch):
+    asked: list[Any] = []
+
+    def outcomes_of(cases, **options):
+        asked.append([case.value("motion.speed") for case in cases])
+        return [made.outcome(0.1 + 0.01 * at) for at in range(len(cases))]
+
+    monkeypatch.setattr(sensitivity, "outcomes", outcomes_of)
+    inputs = [sensitivity.OpenInput("motion.speed", 2.0, "r", ratio=True),
+              sensitivity.OpenInput("motion.speed", 0.1, "s")]  # fmt: skip
+    case = TREADED.replace("motion.speed", "0.4 m/s")
+    one = sensitivity.sensitivity(case, inputs=inputs, quick=False)
+    assert asked[0] == pytest.approx([0.4, 0.2, 0.8, 0.3, 0.5])
+    assert one.nominal.number("cof") == pytest.approx(0.1)
+    ends = [[each.low.number("cof"), each.high.number("cof")] for each in one.effects]
+    assert ends == [pytest.approx([0.11, 0.12]), pytest.approx([0.13, 0.14])]
+    assert [(each.low_value, each.high_value) for each in one.effects] == [
+        pytest.approx((0.2, 0.8)), pytest.approx((0.3, 0.5))]  # fmt: skip
+    assert not one.quick
+
+
 # changes beside a march
 
 
@@ -692,3 +746,17 @@ def test_what_is_known_of_many_cases_is_told_at_once(monkeypatch, tmp_path):
     assert heard[0] == 0.5
     assert heard[-1] == 1.0
     assert outcomes.outcomes([]) == []
+
+
+def test_outcomes_that_shall_not_be_taken_from_the_disk_are_computed(monkeypatch, tmp_path):
+    monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path))
+    asked: list[str] = []
+
+    def run(case, *, quick):
+        asked.append(case.name)
+        return made.result(case.name)
+
+    monkeypatch.setattr(outcomes, "run", run)
+    for cached, times in ((False, 1), (True, 2), (True, 2), (False, 3), (True, 3)):
+        outcomes.outcomes([made.CASE, made.CASE], cached=cached)
+        assert len(asked) == times

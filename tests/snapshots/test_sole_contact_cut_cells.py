@@ -49,3 +49,6 @@ def test_a_lug_pressed_into_a_film_and_lifted(file_regression, cells_along):
     assert made.fluid_pressure[torn] == pytest.approx(-3e3)
     assert made.liquid_fraction[torn].max() < 1
     held(file_regression, said, f"cells_{cells_along}", hide=r"residuals: .*")
+    newton, krylov = {1: (23, 95), 2: (30, 133)}[cells_along]
+    assert sole.counts.newton == pytest.approx(newton, abs=2)
+    assert sole.counts.krylov == pytest.approx(krylov, rel=0.08)

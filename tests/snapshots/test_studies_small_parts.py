@@ -73,7 +73,7 @@ def test_draws_of_a_sole_are_those_of_its_law_about_its_value_times_its_hardness
 
 def test_a_sole_of_another_law_than_the_packaged_has_its_draws_in_a_file(monkeypatch, tmp_path):
     few = packaged_pair_draws().rows(np.arange(30))
-    monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path))
+    monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path / "not" / "there"))
     monkeypatch.setattr(default_law, "draws_without_report", lambda seed: few)
     path = default_law.file_without_report(3)
     assert path.is_file()

@@ -263,7 +263,7 @@ def _material(given: Mapping[str, Any], path: Path) -> tuple[model.MicroMaterial
     if kind == "report":
         young = material.report_elastomer(str(given["report"])).modulus
         assert isinstance(young, material.RelaxationSpectrum)
-        shear = material.shear_from_young(young)
+        shear = material.shear_from_young(young, nu)
     elif kind == "power_law":
         law = given["power_law"]
         if len(law) < 2:

@@ -106,8 +106,6 @@ def _pivot(
         else:
             last = int(np.flatnonzero(wrong)[-1])
             contact[last] = ~contact[last]
-        if load is not None and not contact.any():
-            contact[np.argmin(gap)] = True
 
 
 def _by_secant(

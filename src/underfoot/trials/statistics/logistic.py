@@ -4,6 +4,7 @@ Maximum likelihood and estimating equations are those of statsmodels. Firth's pe
 intervals are ours: no maintained package has them, or converges on predictors as small as a COF.
 """
 
+import warnings as python_warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -484,7 +485,10 @@ def _estimate_equations(
     for structure in (models.cov_struct.Exchangeable(), models.cov_struct.Independence()):
         family = models.families.Binomial()
         model = models.GEE(y, matrix, groups, family=family, cov_struct=structure)
-        with np.errstate(all="ignore"):
+        with np.errstate(all="ignore"), python_warnings.catch_warnings():
+            python_warnings.simplefilter(
+                "ignore"
+            )  # of a fit that does not settle, which is asked below
             fit: Any = model.fit(maxiter=200, ctol=1e-12, start_params=start, first_dep_update=0)
         alike = float(np.asarray(structure.dep_params or 0.0))
         # Of persons who always do the same the moments give 1 and more: no correlation matrix.
