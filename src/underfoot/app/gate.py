@@ -16,6 +16,8 @@ from http.cookies import CookieError, SimpleCookie
 from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode, urlsplit
 
+from underfoot.core.remark import Message
+
 Scope = MutableMapping[str, Any]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
@@ -122,11 +124,13 @@ def own_name(token: str) -> str:
     return f"underfoot-{hashlib.sha256(token.encode()).hexdigest()[:16]}.localhost"
 
 
-def too_large(size: int, most: int) -> str:
+def too_large(size: int, most: int) -> Message:
     """Return what is said to a file that is too large."""
-    return (
-        f"The file has {size / 1e6:.0f} MB. Allowed: at most {most / 1e6:.0f} MB. Export the sole "
-        "alone, without the upper and the last, or with a coarser mesh (0.1 mm is fine enough)."
+    return Message(
+        "The file has {size:.0f} MB. Allowed: at most {most:.0f} MB. Export the sole alone, "
+        "without the upper and the last, or with a coarser mesh (0.1 mm is fine enough).",
+        size=size / 1e6,
+        most=most / 1e6,
     )
 
 

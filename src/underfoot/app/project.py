@@ -113,7 +113,8 @@ class Project:
         """
         path = self.folder.joinpath(*parts).resolve()
         if not path.is_relative_to(self.folder):
-            raise InputError(f'"{"/".join(parts)}" is outside the project', where="project")
+            outside = Message('"{path}" is outside the project', path="/".join(parts))
+            raise InputError(outside, where="project")
         return path
 
     # variants
@@ -136,7 +137,8 @@ class Project:
             InputError: No name for a file.
         """
         if not NAME.fullmatch(name) or name.endswith((".", " ")):
-            raise InputError(f'"{name}" is no name', where="variant", allowed=ALLOWED)
+            what = Message('"{name}" is no name', name=name)
+            raise InputError(what, where="variant", allowed=ALLOWED)
         return self.folder / "variants" / f"{name}.toml"
 
     def case(self, name: str) -> Case:
@@ -170,7 +172,8 @@ class Project:
             InputError: No name for a file, or one that is taken.
         """
         if self.path(name).exists():
-            raise InputError(f'"{name}" exists', where="variant", remedy="Choose another name")
+            what = Message('"{name}" exists', name=name)
+            raise InputError(what, where="variant", remedy="Choose another name")
         self._set(name, text)
         return name
 
@@ -320,7 +323,8 @@ class Project:
         path = self.path(name)
         if not path.is_file():
             known = ", ".join(self.variants()[:12]) or "none yet"
-            raise InputError(f'there is no variant "{name}"', where="variant", allowed=known)
+            what = Message('there is no variant "{name}"', name=name)
+            raise InputError(what, where="variant", allowed=known)
         return path
 
     def _current_states(self, name: str) -> _States:

@@ -11,6 +11,7 @@ from uuid import uuid4
 
 from underfoot.core import InputError
 from underfoot.core.files import checksum, named_for
+from underfoot.core.remark import Message
 
 from .gate import too_large
 from .project import Project
@@ -33,12 +34,14 @@ def upload_path(project: Project, place: str) -> Path:
     folder, *names = place.split("/")
     if folder not in PLACES or not names:
         raise InputError(
-            f'"{place}" is no place for a file', where="upload", allowed=f"{', '.join(PLACES)}"
+            Message('"{place}" is no place for a file', place=place),
+            where="upload",
+            allowed=", ".join(PLACES),
         )
     for name in names:
         if not _PART.fullmatch(name) or _DEVICE.fullmatch(name):
             raise InputError(
-                f'"{name}" can\'t be the name of a file on every system',
+                Message('"{name}" can\'t be the name of a file on every system', name=name),
                 where="upload",
                 allowed='1 to 120 characters without / \\ : * ? " < > |, no dot or space first or '
                 "last, not CON, PRN, AUX, NUL, COM1, LPT1",

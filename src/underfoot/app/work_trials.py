@@ -13,6 +13,7 @@ from typing import Any, Self
 from underfoot.core import InputError, Progress, silent
 from underfoot.core.files import whole_folder
 from underfoot.core.progress import part
+from underfoot.core.remark import Message
 from underfoot.trials.pages.figures import Tile, sheets
 from underfoot.trials.pages.report import (
     STORE,
@@ -78,7 +79,8 @@ class TrialsWork:
                 (f"{recording.name} #", f"{recording.name}: ")
             ):
                 return recording
-        raise InputError(f'"{file}" is not in the folder any more', where="trials")
+        gone = Message('"{file}" is not in the folder any more', file=file)
+        raise InputError(gone, where="trials")
 
     def result(self, recording: Recording, file: str, **how: Any) -> FileResult:
         """Return what is found in a recording under the name ``file``."""

@@ -488,8 +488,11 @@ def _read(
         return found, notes
     trial = _read_recording(file)
     if trial is None:
+        what = Message("{file} is no test of a rubber", file=file.name)
+        if reason:
+            what = Message("{what} ({reason})", what=what, reason=reason)
         raise DataError(
-            f"{file.name} is no test of a rubber{f' ({reason})' if reason else ''}",
+            what,
             where=str(file),
             allowed="columns f, E', E'' (or G', G''; tan delta; phase angle); t, E; tau, E_i; or "
             "time, displacement, force",
@@ -572,7 +575,8 @@ def _relaxation_curve(
             ],
             axis=0,
         )
-        mean = RelaxationCurve(time, means, curves[0].temperature, f"mean of {len(curves)} tests")
+        name = Message("mean of {count} tests", count=len(curves))
+        mean = RelaxationCurve(time, means, curves[0].temperature, name)
         return mean, None, mean.temperature
     at = _reference([curve.temperature for curve in curves], temperature)
     master = relaxation_master_curve(curves, at)

@@ -164,9 +164,10 @@ def _missing(owner: type[Section] | None, key: str, where: str) -> InputError:
         return InputError("this section is missing", where=where, remedy=add)
     extra = field.json_schema_extra if field is not None else None
     stated = extra if isinstance(extra, dict) else {}
-    what, remedy = str(stated.get("missing", "is missing")), stated.get("remedy")
+    what = str(stated.get("missing", "is missing"))
+    remedy = str(stated.get("remedy") or "")
     if owner is not None and issubclass(owner, Option) and "missing" not in stated:
         what = Message('is missing for {key} = "{name}"', key=owner.key, name=owner.name)
-    if remedy is None and field is not None and field.description:
-        remedy = f"Give {key}: {field.description}"
-    return InputError(what, where=where, remedy=str(remedy) if remedy else add)
+    if not remedy and field is not None and field.description:
+        remedy = Message("Give {key}: {description}", key=key, description=field.description)
+    return InputError(what, where=where, remedy=remedy or add)

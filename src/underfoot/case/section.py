@@ -168,8 +168,12 @@ class Section(BaseModel):
             raise InputError(
                 Message("a section of a case is frozen: {name} can't be set", name=name),
                 where=f"{type(self).__name__}.{name}",
-                remedy=f'Make a new case: case.replace("PATH.{name}", ...), or a new section: '
-                f'section.model_copy(update={{"{name}": ...}})',
+                remedy=Message(
+                    'Make a new case: case.replace("PATH.{name}", ...), or a new section: '
+                    "section.model_copy(update={update})",
+                    name=name,
+                    update=f'{{"{name}": ...}}',
+                ),
             )
         super().__setattr__(name, value)
 
@@ -288,15 +292,18 @@ class Option(Section):
             return
         present = cls._known.setdefault(cls.slot, {})
         other, where = present.get(name), f"{cls.__module__}.{cls.__qualname__}"
-        option = f'the {cls.slot} option "{name}"'
+        option = {"slot": cls.slot, "name": name}
         if other is not None and f"{other.__module__}.{other.__qualname__}" != where:
             ours = other.__module__.startswith("underfoot.")
-            what = f"is defined by {'Underfoot' if ours else other.__module__}"
-            remedy = "Give the class another name"
-            raise InputError(f"{option} {what}", where=where, remedy=remedy)
-        if missing := ", ".join(sorted(cls.__abstractmethods__)):
+            by = "Underfoot" if ours else other.__module__
+            what = Message('the {slot} option "{name}" is defined by {by}', **option, by=by)
+            raise InputError(what, where=where, remedy="Give the class another name")
+        if missing := sorted(cls.__abstractmethods__):
+            what = Message(
+                'the {slot} option "{name}" does not define {missing}', **option, missing=missing
+            )
             remedy = Message("Define it as the other options of {slot} do", slot=cls.slot)
-            raise InputError(f"{option} does not define {missing}", where=where, remedy=remedy)
+            raise InputError(what, where=where, remedy=remedy)
         present[name] = cls
 
     @classmethod

@@ -62,8 +62,13 @@ def with_checksum(
         ) from error
     if isinstance(meant, str) and meant.lower() != present:
         raise InputError(
-            f"{path.name} is not the file that the case means: its checksum is "
-            f"{present[:12]}..., not {meant[:12]}...",
+            Message(
+                "{file} is not the file that the case means: its checksum is {present}..., not "
+                "{meant}...",
+                file=path.name,
+                present=present[:12],
+                meant=meant[:12],
+            ),
             where=f"{where}.{key}",
             remedy=Message(
                 "Bring back that file, or remove {checksum_key} to take this one",
@@ -117,7 +122,6 @@ def table_columns(
             Message("{name}: {error}", name=path.name, error=error), where=where
         ) from error
     optional = [name for name in columns if name not in needed]
-    allowed = f"{', '.join(needed)}; also {', '.join(optional)}"
     read = {}
     for name, (unit, headings) in columns.items():
         values = _column(sheet, unit, headings, f"{where}, {name}")
@@ -127,7 +131,12 @@ def table_columns(
             raise InputError(
                 Message('{file} has no column "{column}" of numbers', file=sheet.name, column=name),
                 where=where,
-                allowed=f"{allowed}. Present: " + ", ".join(sheet.columns[:8]),
+                allowed=Message(
+                    "{needed}; also {optional}. Present: {present}",
+                    needed=needed,
+                    optional=optional,
+                    present=sheet.columns[:8],
+                ),
             )
     for name, values in read.items():
         wrong = ~np.isfinite(values)

@@ -180,7 +180,7 @@ class Places:
         while parts:
             line = self.lines.get(tuple(parts))
             if line is not None:
-                return f"{path} ({self.file}, line {line})"
+                return Message("{path} ({file}, line {line})", path=path, file=self.file, line=line)
             parts.pop()
         return f"{path} ({self.file})"
 

@@ -27,7 +27,6 @@ ON_CONTACT = ("cof_adhesion", "cof_hysteresis")
 COF_PARTS = (*ON_CONTACT, "cof_viscous")
 FAINT = 1e-6
 """Share of the load that film and contact have at least where the odds of one are asked for."""
-_HELD = "spread of the friction law, its inputs and the"
 
 
 def log_film_odds(film: Array | float, contact: Array | float) -> Array:
@@ -193,7 +192,8 @@ class TreadPositions:
             for name, value in new.items():
                 if value.uncertainty is not None:  # what the law leaves open stays open
                     new[name] = sampled.sourced(name.removeprefix("cof_"), value)
-            new["cof"] = replace(new["cof"], note=f"{_HELD} {self.held}")
+            note = Message("spread of the friction law, its inputs and the {held}", held=self.held)
+            new["cof"] = replace(new["cof"], note=note)
         load = self.answer("fluid_load")
         force = self.answer("cof") * friction.normal_force
         return replace(friction, **new, fluid_load=load, friction_force=force), sampled

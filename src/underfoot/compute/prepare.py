@@ -184,8 +184,12 @@ def with_members(slot: str, item: Any, where: str) -> Any:
         names = [name for name in dir(protocol) if not name.startswith("_")]
         missing = [name for name in names if not hasattr(item, name)]
         raise InputError(
-            f"{type(item).__name__} is no {protocol.__name__}: it has no "
-            + ", ".join(missing or ["__call__"]),
+            Message(
+                "{name} is no {protocol}: it has no {missing}",
+                name=type(item).__name__,
+                protocol=protocol.__name__,
+                missing=missing or ["__call__"],
+            ),
             where=where,
             allowed=Message("an object with {names}", names=", ".join(names)),
         )

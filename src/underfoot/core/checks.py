@@ -14,15 +14,24 @@ from .remark import Message
 
 def positive(value: float, where: str, unit: str = "") -> float:
     """Return ``value`` as a float; refuse one that is not a finite number above 0."""
-    return _check_bound(
-        value, value > 0, "is not positive", "a finite number above {}", where, unit
-    )
+    if not (math.isfinite(value) and value > 0):
+        raise InputError(
+            Message("{value} is not positive", value=_with_unit(value, unit)),
+            where=where,
+            allowed=Message("a finite number above {bound}", bound=_with_unit(0, unit)),
+        )
+    return float(value)
 
 
 def not_negative(value: float, where: str, unit: str = "") -> float:
     """Return ``value`` as a float; refuse one that is not a finite number of at least 0."""
-    what = "is negative or not finite"
-    return _check_bound(value, value >= 0, what, "a finite number, {} or more", where, unit)
+    if not (math.isfinite(value) and value >= 0):
+        raise InputError(
+            Message("{value} is negative or not finite", value=_with_unit(value, unit)),
+            where=where,
+            allowed=Message("a finite number, {bound} or more", bound=_with_unit(0, unit)),
+        )
+    return float(value)
 
 
 def between(value: float, low: float, high: float, where: str, allowed: str = "") -> float:
@@ -44,7 +53,10 @@ def positive_array(values: ArrayLike, where: str, *, zero: bool = False) -> Arra
         bound = "of 0 or more" if zero else "above 0"
         what = "an empty array"
         if array.size:
-            what = f"{array[~good].flat[0]:g} is not a finite number {bound}"
+            wrong = array[~good].flat[0]
+            what = Message("{wrong:g} is not a finite number above 0", wrong=wrong)
+            if zero:
+                what = Message("{wrong:g} is not a finite number of 0 or more", wrong=wrong)
         raise InputError(what, where=where, allowed=f"{bound}, in SI")
     return array
 
@@ -96,10 +108,5 @@ def poisson_ratio(value: float, where: str = "poisson_ratio") -> float:
     return float(value)
 
 
-def _check_bound(
-    value: float, inside: bool, what: str, allowed: str, where: str, unit: str
-) -> float:
-    if not (math.isfinite(value) and inside):
-        allowed = allowed.format(f"0 {unit}".rstrip())
-        raise InputError(f"{f'{value:g} {unit}'.rstrip()} {what}", where=where, allowed=allowed)
-    return float(value)
+def _with_unit(value: float, unit: str) -> str:
+    return f"{value:g} {unit}".rstrip()

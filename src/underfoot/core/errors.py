@@ -118,7 +118,11 @@ def error_text(error: BaseException) -> str:
         return file_trouble(error)
     if isinstance(error, MemoryError):
         return "not enough memory. Choose a coarser numerics.grid_spacing."
-    return f"internal error: {type(error).__name__}: {error}\nPlease report it with the case file"
+    return Message(
+        "internal error: {name}: {error}\nPlease report it with the case file",
+        name=type(error).__name__,
+        error=str(error),
+    )
 
 
 def file_trouble(error: OSError) -> str:

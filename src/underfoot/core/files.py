@@ -124,9 +124,13 @@ def check_writable_folder(path: Path, *, overwrite: bool = False) -> None:
         )
     if path.is_dir() and any(path.iterdir()) and not any((path / mark).exists() for mark in _OWN):
         names = sorted(entry.name for entry in path.iterdir())
+        held = Message("{names}", names=names[:3])
+        if len(names) > 3:
+            held = Message("{names} and more", names=names[:3])
         raise InputError(
-            f"the folder {path} was not made by underfoot and holds {', '.join(names[:3])}"
-            + (" and more" if len(names) > 3 else ""),
+            Message(
+                "the folder {path} was not made by underfoot and holds {held}", path=path, held=held
+            ),
             where="--out",
             allowed="with --overwrite: a folder of earlier results",
             remedy="Choose another folder, or empty this one yourself",

@@ -33,8 +33,19 @@ class Offer:
     address: str
     package: str
 
+    @property
+    def message(self) -> Message:
+        """Who offers what, and where it stands."""
+        return Message(
+            '{door} "{name}" of {package} ({address})',
+            door=self.door,
+            name=self.name,
+            package=self.package,
+            address=self.address,
+        )
+
     def __str__(self) -> str:
-        return f'{self.door} "{self.name}" of {self.package} ({self.address})'
+        return self.message
 
     def load(self) -> Any:
         """Return what is offered; InputError in one line where it can't be had."""
@@ -103,7 +114,12 @@ def find_offer(door: str, name: str, check: Callable[[Any], str] = lambda _item:
     chosen = [offer for offer in chosen if offer.package == OWN] or chosen
     if len(chosen) > 1:
         raise InputError(
-            f'two packages offer the {door} "{name}": ' + " and ".join(map(str, chosen)),
+            Message(
+                'two packages offer the {door} "{name}": {offers: and }',
+                door=door,
+                name=name,
+                offers=[offer.message for offer in chosen],
+            ),
             remedy="Remove one of them",
         )
     for offer in chosen:

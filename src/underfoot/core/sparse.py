@@ -167,8 +167,12 @@ class _Checked:
                         largest_residual=LARGEST_RESIDUAL,
                     ),
                     where=self._where,
-                    remedy="Check that each part is held or loaded, or choose the other solver: "
-                    f"{VARIABLE}={BACK_ENDS[1 - BACK_ENDS.index(self._name)]}",
+                    remedy=Message(
+                        "Check that each part is held or loaded, or choose the other solver: "
+                        "{variable}={other}",
+                        variable=VARIABLE,
+                        other=BACK_ENDS[1 - BACK_ENDS.index(self._name)],
+                    ),
                 )
         return answer
 

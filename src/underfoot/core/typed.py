@@ -106,8 +106,9 @@ def _decimal(digits: str, text: str, usual: str) -> str | None:
         whole, _, part = digits.rpartition(last)
         if not signs[:-1]:
             if last != usual and re.fullmatch(r"[1-9]\d{0,2}", whole) and len(part) == 3:
+                readings = {"small": f"{whole}.{part}", "large": f"{whole}{part}"}
                 raise InputError(
-                    f'"{text}" can be {whole}.{part} or {whole}{part}',
+                    Message('"{text}" can be {small} or {large}', text=text, **readings),
                     allowed=f"{whole}{usual}{part} or {whole}{part}",
                     remedy="Write it without thousands, with the decimal sign of the page",
                 )

@@ -118,7 +118,7 @@ def to_si(given: object, unit: str, *, where: str, usual: str = "", comma: bool 
         raise InputError(
             Message("{given} is not a number", given=given),
             where=where,
-            allowed=f'for example "{example}"',
+            allowed=Message('for example "{example}"', example=example),
         )
     if isinstance(given, int | float):
         if unit == "1":
@@ -216,9 +216,11 @@ def si_unit(given: str, *, where: str) -> str:
         except InputError:
             continue
         return unit
-    raise InputError(
-        f'"{given}": unknown unit "{text}"', where=where, nearest=nearest_match(text, _KNOWN)
-    )
+    raise InputError(_unknown_unit(given, text), where=where, nearest=nearest_match(text, _KNOWN))
+
+
+def _unknown_unit(given: str, unit: str) -> Message:
+    return Message('"{given}": unknown unit "{unit}"', given=given, unit=unit)
 
 
 def _no_unit(given: object, unit: str, where: str, example: str) -> InputError:
@@ -239,9 +241,9 @@ def _split(given: str, where: str, comma: bool, example: str) -> tuple[float, st
         raise
     if parts is None or _NO_UNIT.match(parts[1]):
         raise InputError(
-            f'"{given}" is not a number with a unit',
+            Message('"{given}" is not a number with a unit', given=given),
             where=where,
-            allowed=f'for example "{example}"',
+            allowed=Message('for example "{example}"', example=example),
         )
     number, text = parts
     text = re.sub(r"(?<=[A-Za-z])[ .](?=[A-Za-z])", "*", text.translate(_SIGNS).strip())
@@ -264,7 +266,7 @@ def _convert(
         raise InputError(
             Message('"{given}" has a unit, this quantity has none', given=given),
             where=where,
-            allowed=f'for example "{example}"',
+            allowed=Message('for example "{example}"', example=example),
             remedy=Message('Write {number:g}, without "{text}"', number=number, text=text),
         )
     import pint
@@ -274,16 +276,16 @@ def _convert(
         quantity = registry.Quantity(number, text)
     except Exception as error:
         raise InputError(
-            f'"{given}": unknown unit "{text}"',
+            _unknown_unit(given, text),
             where=where,
-            allowed=f'a unit of {unit}, for example "{example}"',
+            allowed=Message('a unit of {si}, for example "{example}"', si=unit, example=example),
             nearest=nearest_match(text, _KNOWN),
         ) from error
     target = {"K": "kelvin"}.get(unit, unit)
     refused = InputError(
         Message('"{given}" is not a value in {shown}', given=given, shown=shown),
         where=where,
-        allowed=f'for example "{example}"',
+        allowed=Message('for example "{example}"', example=example),
     )
     try:
         value = float(quantity.to(target).magnitude)

@@ -94,7 +94,12 @@ class Effects(Presentable):
             )
             for k in order
         ]
-        title = f"{self.output}: {self.analysis.capitalize()} indices, 95 %, on {self.basis}"
+        title = Message(
+            "{output}: {analysis:capital} indices, 95 %, on {basis}",
+            output=self.output,
+            analysis=self.analysis,
+            basis=self.basis,
+        )
         return Table(title, ("Input", self.heads[1], self.heads[0]), rows)
 
 

@@ -112,7 +112,7 @@ def _threads(client: Any, address: str, told: Callable[[str], None]) -> int:
     began = time.monotonic()
     while not (threads := sum(client.nthreads().values())):
         if time.monotonic() - began >= PATIENCE:
-            told(f"No worker: start dask worker {address}")
+            told(Message("No worker: start dask worker {address}", address=address))
         time.sleep(0.2)
     return threads
 

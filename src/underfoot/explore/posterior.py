@@ -27,7 +27,7 @@ from underfoot.core.files import whole_file
 from underfoot.core.optional import optional_module
 from underfoot.core.presentation import Presentable, Table, quantity_text
 from underfoot.core.progress import part
-from underfoot.core.remark import Message
+from underfoot.core.remark import Message, Remark
 from underfoot.core.threads import threads_limited
 
 from .goals import Goal
@@ -98,8 +98,13 @@ class Posterior(Presentable):
         ratios = self.draws.std(axis=0) / self.prior.std(axis=0)
         best = int(np.argmin(ratios))
         return (
-            f"Readings used: {len(self.readings)}. They narrow {self.paths[best]} most: its "
-            f"standard deviation is {ratios[best]:.0%} of the prior's.",
+            Message(
+                "Readings used: {count}. They narrow {path} most: its standard deviation is "
+                "{share:.0%} of the prior's.",
+                count=len(self.readings),
+                path=self.paths[best],
+                share=ratios[best],
+            ),
             Message(
                 "Discrepancy of the model {median:.0%} (median).",
                 median=np.median(self.discrepancy),
@@ -131,7 +136,7 @@ class Posterior(Presentable):
             )
             for first, second in self.apart
         ]
-        weak = [f"{model.name}: {model.reliability}" for model in self.models if model.q2 < 0.9]
+        weak = [Remark.of(model.name, model.reliability) for model in self.models if model.q2 < 0.9]
         edge = [
             Message("The posterior of {path} lies at the end of its prior: widen that.", path=path)
             for path, now, then in zip(self.paths, self.draws.T, self.prior.T, strict=True)
@@ -165,7 +170,7 @@ class Posterior(Presentable):
 
     def remarks(self) -> Mapping[str, Sequence[str]]:
         """Return the error of the surrogates."""
-        return {"Surrogates": [f"{model.name}: {model.reliability}" for model in self.models]}
+        return {"Surrogates": [Remark.of(model.name, model.reliability) for model in self.models]}
 
     def write(self, path: Path) -> None:
         """Write the draws as CSV, one column a path (SI): ``uncertain.posterior`` of a study."""

@@ -630,9 +630,9 @@ class StudyResult(Presentable):
         ]  # fmt: skip
 
 
-def of_100(share: float) -> str:
+def of_100(share: float) -> Message:
     """Return a share of draws as "n of 100", rounded down."""
-    return f"{math.floor(100 * share + 1e-9)} of 100"
+    return Message("{count} of 100", count=math.floor(100 * share + 1e-9))
 
 
 def _goal_text(value: float, deviation: float, unit: str) -> str:

@@ -185,7 +185,13 @@ class Study:
                 time.sleep(pause)  # others compute them
                 waited += pause
                 if waited >= PATIENCE and (other := self.store.other):
-                    told(f"Waiting for {other}: taken over after {SILENT / 60:.0f} min of silence")
+                    told(
+                        Message(
+                            "Waiting for {other}: taken over after {minutes:.0f} min of silence",
+                            other=other,
+                            minutes=SILENT / 60,
+                        )
+                    )
                 pause = min(2 * pause, LONGEST_PAUSE)
             elif not self._advance(latest, leads):
                 return
@@ -234,4 +240,4 @@ class Study:
     def _stage(self) -> str:
         endings = self.store.known.endings
         failed = endings.total() - endings[Ending.COMPUTED]
-        return "Cases" + (f", {failed} without numbers" if failed else "")
+        return Message("Cases, {count} without numbers", count=failed) if failed else "Cases"

@@ -162,12 +162,14 @@ def read_plan(
                 remedy="Write several [conditions], or draws of what is [uncertain]",
             )
     budget, grid = method.budget, method.design == "grid"
-    takes = "the grid takes" if grid else "one design takes"
+    few = Message("a budget of {budget} runs is less than one design takes", budget=budget)
+    if grid:
+        few = Message("a budget of {budget} runs is less than the grid takes", budget=budget)
     least = plan.cases_per_design * (plan.designs if grid else 1)
     reader.refuse_if(
         budget is not None and budget < least,
         "method.budget",
-        f"a budget of {budget} runs is less than {takes}",
+        few,
         allowed=Message(
             "from {least} ({grid}conditions times draws)", least=least, grid="designs times " * grid
         ),
@@ -177,7 +179,7 @@ def read_plan(
         float(f"{cases * seconds / YEAR:.1g}")
         for seconds in run_cost(plan.base, quick=method.quick).seconds
     )
-    cost = f", {low:g} to {high:g} years of one processor"
+    cost = Message(", {low:g} to {high:g} years of one processor", low=low, high=high)
     reader.refuse_many("vary" if grid else "method", "cases", cases, cost)
     reader.end()
     if plan.goals and method.again_on and plan.again_is_the_same:
@@ -315,7 +317,7 @@ class _Reader:
         self.refuse_if(
             many,
             path,
-            f"{count:.2g} {what}{cost}",
+            Message("{count:.2g} {what}{cost}", count=count, what=what, cost=cost),
             allowed=Message("at most {most:g}", most=MOST_CASES),
             remedy=remedy,
         )

@@ -296,16 +296,23 @@ class Surrogate:
     without: tuple[Model, ...] = ()
 
     @property
-    def reliability(self) -> str:
+    def reliability(self) -> Message:
         """Its error as it stands wherever the surrogate is used."""
         error = quantity_text(self.error, self.unit)
-        mark = "" if self.q2 >= TRUSTED else ": too much to rank designs by"
         runs = Message(
             "a formula through {count} computed designs ({form})",
             count=len(self.runs),
             form=self.model.form,
         )
-        return f"{runs} misses designs left out by {error} (Q2 {self.q2:.3f}){mark}"
+        told = Message(
+            "{runs} misses designs left out by {error} (Q2 {q2:.3f})",
+            runs=runs,
+            error=error,
+            q2=self.q2,
+        )
+        if self.q2 >= TRUSTED:
+            return told
+        return Message("{told}: too much to rank designs by", told=told)
 
     def predicted(self, points: Array, *, noise: bool = True) -> tuple[Array, Array]:
         """Return mean and standard deviation (n,) at places (n, inputs) of the unit cube, SI.

@@ -158,7 +158,9 @@ def _level(value: float, deviation: float, unit: str, fluids: str) -> SourcedVal
         source=f"calibrated on {fluids}, {_PAIR}",
         uncertainty=deviation,
         assumed=True,
-        note=f"Calibrated on {fluids}, {_PAIR}; taken to hold for this pair",
+        note=Message(
+            "Calibrated on {fluids}, {pair}; taken to hold for this pair", fluids=fluids, pair=_PAIR
+        ),
     )
 
 

@@ -182,7 +182,7 @@ class UncertainInputs(Presentable):
         ]
         rows.append(("error of the law", None, law.error_of_model, "1", False, ""))
         return Table(
-            f"Friction law {law.name} ({law.source})",
+            Message("Friction law {name} ({source})", name=law.name, source=law.source),
             ("input", "value", "standard deviation", "unit", "assumed", "source"),
             rows,
         )

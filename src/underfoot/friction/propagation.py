@@ -181,6 +181,9 @@ def _result(
         raise InputError(
             "the result is not finite for a draw of the inputs",
             where="propagated",
-            remedy="Check the spreads: " + ", ".join(f"{k} = {v:.3g}" for k, v in values.items()),
+            remedy=Message(
+                "Check the spreads: {spreads}",
+                spreads=[f"{name} = {value:.3g}" for name, value in values.items()],
+            ),
         )
     return result

@@ -90,7 +90,7 @@ class SpeedTableLaw(UncertainInputs):
         """Return the readings."""
         spread = [None] * self.speed.size if self.cof_deviation is None else self.cof_deviation
         return Table(
-            f"Friction law {self.name} ({self.source})",
+            Message("Friction law {name} ({source})", name=self.name, source=self.source),
             ("speed m/s", "COF", "standard deviation"),
             list(zip(self.speed.tolist(), self.cof.tolist(), spread, strict=True)),
         )

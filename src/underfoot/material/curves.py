@@ -72,7 +72,13 @@ def checked_curve(
     axis = "time" if quantity == "relaxation modulus" else "angular frequency"
     if x.ndim != 1 or x.shape != y.shape:
         raise DataError(
-            f"{axis} of shape {x.shape} and {quantity} of shape {y.shape}",
+            Message(
+                "{axis} of shape {shape} and {quantity} of shape {other}",
+                axis=axis,
+                shape=str(x.shape),
+                quantity=quantity,
+                other=str(y.shape),
+            ),
             where=quantity,
             allowed="two one-dimensional arrays of the same length",
         )

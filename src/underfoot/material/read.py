@@ -330,8 +330,10 @@ def _series(
     terms = fraction or term
     if terms is None:
         raise DataError(
-            "no column of terms among "
-            + ", ".join(text.excerpt(column.name) for column in table.columns),
+            Message(
+                "no column of terms among {columns}",
+                columns=[text.excerpt(column.name) for column in table.columns],
+            ),
             where=where,
             allowed="E_i or G_i (with unit), e_i or g_i (fractions)",
         )

@@ -185,12 +185,21 @@ class SpectrumFit(Judged):
         return ModulusBand(w, storage[0], storage[1], loss[0], loss[1], outside)
 
     def __str__(self) -> str:
-        parts = ", ".join(
-            f"{name} rms {100 * np.sqrt(np.mean(r**2)):.2g} %, largest "
-            f"{100 * np.max(np.abs(r)):.2g} %"
+        parts = [
+            Message(
+                "{name} rms {rms:.2g} %, largest {largest:.2g} %",
+                name=name,
+                rms=100 * np.sqrt(np.mean(r**2)),
+                largest=100 * np.max(np.abs(r)),
+            )
             for name, r in self.residuals.items()
+        ]
+        return Message(
+            "{count} terms, {quality} ({parts})",
+            count=len(self.spectrum),
+            quality=self.quality,
+            parts=parts,
         )
-        return f"{len(self.spectrum)} terms, {self.quality} ({parts})"
 
 
 def fit_relaxation(

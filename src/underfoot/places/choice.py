@@ -86,7 +86,7 @@ TOSS_UP = 0.05
 """Distance of a chance from one half below which a change is none that helps."""
 IDLE = 5e-3
 """Share of the slips that a change moves at least: a smaller one does nothing."""
-CHECKED = (("pendulum-96", "PTV of"), ("tile_glycerine", "EN value, tile with glycerine, of"))
+CHECKED = ("pendulum-96", "tile_glycerine")
 
 
 @dataclass(frozen=True, slots=True)
@@ -882,15 +882,15 @@ def _measurements(
     if len(slips) < 2:
         return ()
     now, found = int(np.argmin(slips.mean(axis=1))), []
-    device: Machine = machines()[CHECKED[0][0]]
+    device: Machine = machines()[CHECKED[0]]
     readings = [
-        (f"{CHECKED[0][1]} {f.name}",
+        (Message("PTV of {floor}", floor=f.name),
          device.cof(joint, f.name, floor_rq[f.name], FLUIDS[device.fluids[0]]))
         for f in place.floors if not f.readings
     ]  # fmt: skip
-    test = slip_tests()[CHECKED[1][0]]
+    test = slip_tests()[CHECKED[1]]
     readings += [
-        (f"{CHECKED[1][1]} {shoe.name}",
+        (Message("EN value, tile with glycerine, of {shoe}", shoe=shoe.name),
          tested_cof(joint, cases[shoe.name], _law(cases[shoe.name]), shoe, test))
         for shoe in place.shoes if not shoe.readings
     ]  # fmt: skip

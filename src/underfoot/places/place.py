@@ -197,7 +197,8 @@ def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None 
         names = [one.name for one in each]
         twice = next((one for one in names if names.count(one) > 1), None)
         if twice is not None:
-            raise InputError(f'"{twice}" stands twice', where=kind, allowed="one name each")
+            what = Message('"{name}" stands twice', name=twice)
+            raise InputError(what, where=kind, allowed="one name each")
     area = sum(floor.share for floor in floors)
     floors = tuple(
         PlaceFloor(
@@ -483,7 +484,9 @@ def _worn_region(entry: Mapping[str, Any], where: str) -> tuple[float, float]:
     length, width = (to_si(side, "m", where=at) for side in given)
     for side in (length, width):
         if not LEAST_REGION <= side <= MOST_REGION:
-            ends = f"{1e3 * LEAST_REGION:g} mm to {1e3 * MOST_REGION:g} mm"
+            ends = Message(
+                "{least:g} mm to {most:g} mm", least=1e3 * LEAST_REGION, most=1e3 * MOST_REGION
+            )
             raise RangeError(f"{1e3 * side:g} mm", where=at, allowed=ends)
     return length, width
 

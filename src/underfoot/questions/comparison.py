@@ -395,7 +395,7 @@ def differences(tables: Sequence[Mapping[str, Any]]) -> list[tuple[Any, ...]]:
 def _check_count(count: int) -> None:
     if not 2 <= count <= len(LETTERS):
         raise InputError(
-            f"{count} result{'' if count == 1 else 's'} to compare",
+            Message("{count} {count:result|results} to compare", count=count),
             where="compare",
             allowed=f"2 to {len(LETTERS)}",
         )

@@ -491,11 +491,13 @@ def measured_rcof(path: Path) -> MeasuredRcof:
     values, several = [*steps.values()], len(steps) > 1
     apart = [float(np.mean(value)) for value in values] if several else values[0]
     if np.ptp(apart) < SAME_RCOF:
-        alike = f"{len(apart)} {'persons' if several else 'steps'}, all alike"
+        alike = Message("one step")
+        if len(apart) > 1:
+            alike = Message("{count} steps, all alike", count=len(apart))
+        if several:
+            alike = Message("{count} persons, all alike", count=len(apart))
         raise InputError(
-            Message(
-                "RCOF of {alike}: there is no spread", alike=alike if len(apart) > 1 else "one step"
-            ),
+            Message("RCOF of {alike}: there is no spread", alike=alike),
             where=str(path),
             remedy="Record more steps, or set risk.rcof_mean and risk.rcof_sd",
         )

@@ -19,7 +19,7 @@ from underfoot.core.fields import Fields
 from underfoot.core.html import data_address, environment, new_figure, png
 from underfoot.core.page import PageSection, Picture, remark_sections, table_sections
 from underfoot.core.presentation import Table, percent
-from underfoot.core.remark import Message
+from underfoot.core.remark import Message, Remark
 from underfoot.core.unit_text import display_unit
 from underfoot.explore import Study, StudyResult
 from underfoot.explore.effects import Effects, effects
@@ -161,7 +161,7 @@ def _study_sections(
             picture = Picture(
                 "Slices through the surrogates", data_address(pictures["slices"]), True
             )
-            words = [f"{model.name}: {model.reliability}" for model in result.models]
+            words = [Remark.of(model.name, model.reliability) for model in result.models]
             intro = (
                 "Through the marked design; the band is one standard deviation of the surrogate."
             )

@@ -24,7 +24,7 @@ from underfoot.core.page import PageSection, page, remark_sections
 from underfoot.core.pool import available_processors
 from underfoot.core.presentation import Table, quantity_text
 from underfoot.core.progress import time_text
-from underfoot.core.remark import Message
+from underfoot.core.remark import NOTHING, Message
 from underfoot.core.threads import threads_limited
 from underfoot.explore.check import size_text
 from underfoot.explore.cost import StudyCost, study_cost
@@ -242,17 +242,23 @@ class LiveStudy(StudyStatus):
         ]
         return Table("Cost", ("", "So far", "Left, at most about"), rows)
 
-    def drawn_text(self) -> str:
+    def drawn_text(self) -> Message:
         """Return which designs are drawn, where not all that ended are."""
         ended, front, shown = (len(k) for k in (self.ended_runs, self.front_runs, self.shown_runs))
         if shown == ended:
-            return ""
+            return NOTHING
         on = min(front, MOST_FRONT)
-        of = f"{on} of the {front}" if on < front else f"all {front}"
-        best = f"{of} of the front, the best and the worst in each goal, " if front else ""
-        return (
-            f"{shown} of {ended} designs that ended are drawn: {best}the {LATEST} that were set "
-            "last, and the others evenly thinned. Front and best are of all."
+        of = Message("all {front}", front=front)
+        if on < front:
+            of = Message("{count} of the {front}", count=on, front=front)
+        best = Message("{of} of the front, the best and the worst in each goal, ", of=of)
+        return Message(
+            "{shown} of {ended} designs that ended are drawn: {best}the {latest} that were set "
+            "last, and the others evenly thinned. Front and best are of all.",
+            shown=shown,
+            ended=ended,
+            best=best if front else NOTHING,
+            latest=LATEST,
         )
 
 

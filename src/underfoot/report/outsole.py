@@ -266,7 +266,7 @@ def outsole_figure(surface: SoleSurface, measures: TreadMeasures) -> Figure:
         axes.plot(rim[:, 1], rim[:, 0], color="0.25", linewidth=1.0)
         frame_sole(axes, surface.x * 1e3, surface.y * 1e3, surface.inside)
         axes.set(xticks=[], yticks=[])
-    figure.suptitle(f"{surface.name}, seen from below", fontsize="large")
+    figure.suptitle(Message("{name}, seen from below", name=surface.name), fontsize="large")
     return figure
 
 
@@ -287,7 +287,7 @@ def _parts(axes: Axes, surface: SoleSurface, measures: TreadMeasures) -> None:
         "land": ("0.72", surface.land),
         "channels open to the rim": ("#dfeaf3", channel),
         "closed channels": (_CLOSED, channel & ~draining(surface.inside, channel)),
-        f"largest untreaded patch, {measures.patch_area * 1e6:.3g} mm²": (
+        Message("largest untreaded patch, {area:.3g} mm²", area=measures.patch_area * 1e6): (
             _PATCH,
             largest_patch(surface),
         ),
@@ -303,7 +303,7 @@ def _parts(axes: Axes, surface: SoleSurface, measures: TreadMeasures) -> None:
     ]
     style: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0)}
     axes.legend(handles=handles, frameon=False, fontsize=8, **style)
-    axes.set_title(f"Land {measures.land_ratio:.0%} of the plan form")
+    axes.set_title(Message("Land {share:.0%} of the plan form", share=measures.land_ratio))
 
 
 _CASE = """\

@@ -100,7 +100,8 @@ def _map(ax: Axes, regimes: RegimeMap, fluids: Mapping[str, float]) -> None:
     keys = [Line2D([], [], color="#333333", label=text)]
     if regimes.fluid_share is not None:
         lines |= _limits(ax, speed, viscosity, regimes.fluid_share, SHARE_LIMITS, "dashed")
-        text = f"fluid carries {SHARE_LIMITS[0]:.0%} and {SHARE_LIMITS[1]:.0%}"
+        low, high = SHARE_LIMITS
+        text = Message("fluid carries {low:.0%} and {high:.0%}", low=low, high=high)
         keys.append(Line2D([], [], color="#333333", linestyle="dashed", label=text))
     box = {"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 1.0}
     style: dict[str, Any] = {"va": "center", "bbox": box, "transform": ax.get_yaxis_transform()}

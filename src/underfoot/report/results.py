@@ -18,7 +18,7 @@ from underfoot.core.fields import Fields, labelled_fields
 from underfoot.core.html import data_address, new_figure
 from underfoot.core.page import PageSection, Picture, page, remark_sections, table_sections
 from underfoot.core.presentation import Table
-from underfoot.core.remark import Message
+from underfoot.core.remark import Message, together
 from underfoot.questions.comparison import Comparison
 from underfoot.questions.risk import RiskAssessment
 from underfoot.shoe import SoleMap
@@ -143,7 +143,7 @@ def _comparison_sections(
     if comparison.usable:
         datasets = [result.data for result in results]
         note, titles = grid_note(datasets), {q.name: q.title for q in quantities(datasets)}
-        scale = f"One colour scale for all; red is more than A, blue less. {note} {SEEN}"
+        scale = together(["One colour scale for all; red is more than A, blue less.", note, SEEN])
         parts = [
             PageSection("Under the soles", html=_viewer(results), stage=True),
             replace(ranking[0], first=True),

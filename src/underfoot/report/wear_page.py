@@ -10,6 +10,7 @@ import numpy as np
 
 from underfoot.core.html import data_address
 from underfoot.core.page import PageSection, Picture, remark_sections, table_sections
+from underfoot.core.remark import Message
 from underfoot.questions.wear import WearSeries
 
 from .dispatch import files, sections
@@ -89,13 +90,15 @@ def _wear_files(series: WearSeries) -> dict[str, Writer]:
     return {**data_writers(series), **fields}
 
 
-def _state(series: WearSeries, number: int) -> str:
+def _state(series: WearSeries, number: int) -> Message:
     """Return what a state is called on the slider."""
     bare = number == len(series.points)
     outcome = series.untreaded if bare else series.points[number].outcome
     cof = math.nan if outcome is None else outcome.number("cof")
-    friction = "no result" if math.isnan(cof) else f"COF {cof:.3f}"
+    friction = Message("no result") if math.isnan(cof) else Message("COF {cof:.3f}", cof=cof)
     if bare:
-        return f"no tread at all, {friction}"
-    lost = series.points[number].measures.removed_depth
-    return f"{lost * 1e3:.3g} mm lost, {friction}" if number else f"new, {friction}"
+        return Message("no tread at all, {friction}", friction=friction)
+    if not number:
+        return Message("new, {friction}", friction=friction)
+    lost = series.points[number].measures.removed_depth * 1e3
+    return Message("{lost:.3g} mm lost, {friction}", lost=lost, friction=friction)

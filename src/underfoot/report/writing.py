@@ -43,8 +43,10 @@ class Written:
 
     def lines(self) -> list[str]:
         """Return where the files are and what is missing."""
-        opened = "" if self.page is None else f"; open {self.page}"
-        return [f"Files in {self.folder}{opened}", *self.failures]
+        files = Message("Files in {folder}", folder=self.folder)
+        if self.page is not None:
+            files = Message("{files}; open {page}", files=files, page=self.page)
+        return [files, *self.failures]
 
 
 def write_folder(

@@ -169,6 +169,19 @@ def _check_grid(
         )
 
 
+_ACROSS = {
+    "channel": Message("cells of the grid across the channel"),
+    "lug": Message("cells of the grid across the lug"),
+    "groove": Message("cells of the grid across the groove"),
+    "sipe": Message("cells of the grid across the sipe"),
+    "arc channel": Message("cells of the grid across the arc channel"),
+}
+_NARROWEST = {
+    "channel": Message("cells of the grid across the narrowest tenth of the channels"),
+    "lug": Message("cells of the grid across the narrowest tenth of the lugs"),
+}
+
+
 def _few_cells(quantity: str, cells: float) -> list[Breach]:
     tested = ValidityRange(CELLS_WANTED, math.inf, "1", "grid refinement of the tread")
     return breaches("grid", {quantity: tested}, {quantity: cells})
@@ -284,7 +297,7 @@ def _resolution(heel: SoleShape, spacing: float) -> list[Breach]:
                     spacing=width / CELLS_WANTED * 1000.0,
                 ),
             )
-        unresolved += _few_cells(f"cells of the grid across the {name}", cells)
+        unresolved += _few_cells(_ACROSS[name], cells)
     return unresolved
 
 
@@ -537,9 +550,7 @@ def resolution_breaches(surface: SoleSurface, spacing: float) -> list[Breach]:
                 ),
             )
         cells = (narrow + surface.spacing / 2) / spacing
-        unresolved += _few_cells(
-            f"cells of the grid across the narrowest tenth of the {name}s", cells
-        )
+        unresolved += _few_cells(_NARROWEST[name], cells)
     return unresolved
 
 

@@ -186,10 +186,10 @@ class Tread:
         for name in (*lengths, "letters"):
             value = getattr(self, name)
             if (value is None) == (name in needed):
-                raise InputError(
-                    f"is {'missing' if value is None else 'not used'} for {self.pattern}",
-                    where=f"tread.{name}",
-                )
+                what = Message("is not used for {pattern}", pattern=self.pattern)
+                if value is None:
+                    what = Message("is missing for {pattern}", pattern=self.pattern)
+                raise InputError(what, where=f"tread.{name}")
             if value is not None and name in lengths:
                 positive(value, f"tread.{name}")
         most = math.radians(75 if self.pattern == "chevrons" else 180)

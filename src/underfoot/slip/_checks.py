@@ -61,7 +61,8 @@ class PresentableModel(Presentable):
         acof = np.linspace(0.0, 0.4, 17)
         rows = zip(acof.tolist(), (acof - 0.2).tolist(), model(acof, 0.2).tolist(), strict=True)
         columns = ("ACOF", "ACOF - RCOF", "probability of a slip")
-        return Table(f"Slip model {model.name} ({model.source})", columns, list(rows))
+        title = Message("Slip model {name} ({source})", name=model.name, source=model.source)
+        return Table(title, columns, list(rows))
 
     def __repr__(self) -> str:
         model: Any = self

@@ -108,10 +108,16 @@ def _split(surface: Surface, cutoff: float, ends: str) -> tuple[Surface, Surface
     short = surface.heights[inner] - long
     periodic = ends == "periodic"
     name = f"ISO 16610-{21 if surface.axes == 1 else 61}"
-    how = f"waves kept, Gaussian filter ({name}), cut-off {metres(cutoff)}, ends: {ends}"
+    how = {"name": name, "cutoff": metres(cutoff), "ends": ends}
+    long_kept = Message(
+        "long waves kept, Gaussian filter ({name}), cut-off {cutoff}, ends: {ends}", **how
+    )
+    short_kept = Message(
+        "short waves kept, Gaussian filter ({name}), cut-off {cutoff}, ends: {ends}", **how
+    )
     return (
-        surface.changed(long, f"long {how}", periodic=periodic),
-        surface.changed(short, f"short {how}", periodic=periodic),
+        surface.changed(long, long_kept, periodic=periodic),
+        surface.changed(short, short_kept, periodic=periodic),
     )
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 
 from .heights import HeightMap, Profile
 from .prepare import level_surface
@@ -79,9 +80,15 @@ class Texture:
         return " and ".join(f"{math.degrees(lay):.0f}°" for lay in sorted(self.lays))
 
     def __str__(self) -> str:
-        least = "at most " if self.bounded else ""
-        several = "lays" if len(self.lays) > 1 else "lay"
-        return f"Str {least}{self.ratio:.2g}, {several} at {self.named_lays} from x"
+        ratio = Message("Str {ratio:.2g}", ratio=self.ratio)
+        if self.bounded:
+            ratio = Message("Str at most {ratio:.2g}", ratio=self.ratio)
+        return Message(
+            "{ratio}, {count:lay|lays} at {angles} from x",
+            ratio=ratio,
+            count=len(self.lays),
+            angles=self.named_lays,
+        )
 
 
 def texture(surface: HeightMap) -> Texture | None:

@@ -109,7 +109,7 @@ def level_surface(surface: Surface, degree: int = 1) -> Surface:
         )
     coefficients, *_ = np.linalg.lstsq(basis, z.ravel(), rcond=None)
     form = {0: "mean", 1: "line" if z.ndim == 1 else "plane"}.get(
-        degree, f"polynomial of degree {degree}"
+        degree, Message("polynomial of degree {degree}", degree=degree)
     )
     rest = (z.ravel() - basis @ coefficients).reshape(z.shape)
     return surface.changed(rest, Message("least squares {form} removed", form=form))

@@ -328,9 +328,13 @@ def power_law(
     _, turn, slope, error = best
     exponent = -(slope + (1 if isinstance(measured, ProfileSpectrum) else 2)) / 2
     bounded = min(max(exponent, 0.0), 1.0)
-    note = "of the power law that continues the spectrum"
+    note = Message("of the power law that continues the spectrum")
     if bounded != exponent:
-        note += f"; the fit gives {exponent:.2f}, which no self-affine surface has"
+        note = Message(
+            "{note}; the fit gives {exponent:.2f}, which no self-affine surface has",
+            note=note,
+            exponent=exponent,
+        )
     hurst = SourcedValue(bounded, "1", source="fit to the spectrum", uncertainty=error, note=note)
     log_q = np.log(spectrum.wavenumber)
     shape = -2 * (1 + bounded) * np.maximum(log_q - turn, 0.0)
@@ -460,10 +464,11 @@ def spectral_moments(
     inside = (q >= low * (1 - 1e-12)) & (q <= high * (1 + 1e-12))
     weight, q = (spectrum.density * spectrum.area)[inside], q[inside]
     if not (weight.size and weight.sum() > 0.0):
+        least, most = spectrum.wavenumber[[0, -1]]
         raise InputError(
-            f"no roughness between {low:g} and {high:g} rad/m",
+            Message("no roughness between {low:g} and {high:g} rad/m", low=low, high=high),
             where="band",
-            allowed=f"within {spectrum.wavenumber[0]:g} to {spectrum.wavenumber[-1]:g} rad/m",
+            allowed=Message("within {least:g} to {most:g} rad/m", least=least, most=most),
         )
     shares = zip(spectrum.moment_shares, (0, 2, 4), strict=True)
     m0, m2, m4 = (share * float(np.sum(weight * q**n)) for share, n in shares)

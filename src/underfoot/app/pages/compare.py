@@ -8,9 +8,11 @@ from typing import Any
 from nicegui import ui
 
 from underfoot.core import InputError
+from underfoot.core.remark import together
 
 from ..components import SoleView, sentences, table, task_line, title
 from ..jobs import DONE, QueuedTask
+from ..labels import package_label
 from ..result_table import ResultTable
 from ..session import PICTURES, Session
 from .answer import begin_run
@@ -98,8 +100,9 @@ class _Compare:
             for name in self.choice.value:
                 if not self.session.project.is_current(name):
                     ui.label(self.text("compare.changed", name=name)).classes("caution")
-            headline = " ".join(comparison["headline"]).replace(" %", "\u00a0%")
-            ui.label(headline).classes("lead")
+            headline = together(comparison["headline"])
+            lead = package_label(headline).classes("lead")
+            lead.set_text(headline.replace(" %", "\u00a0%"))
             sentences(comparison["cautions"], "soft")
         with self.inputs:
             for each in comparison["tables"]:

@@ -10,8 +10,10 @@ from nicegui import ui
 from nicegui.events import GenericEventArguments
 
 from underfoot.core.errors import UnderfootError
+from underfoot.core.remark import Message
 
 from ..components import sentences, title
+from ..labels import package_label
 from ..session import Session
 from ..trials_study import TrialsFolder
 from .trials_folder import STATIC, WORK
@@ -140,7 +142,8 @@ class TrialView:
             self._reason()
             return
         if step is not None:
-            ui.label(f"{step['item']}: {_step_words(step)}").classes("step-words")
+            words = Message("{item}: {words}", item=step["item"], words=_step_words(step))
+            package_label(words).classes("step-words")
             sentences(step["cautions"], "reason")
             self._offer(step)
         elif self.view["kind"] != "readings" and not self.view["edits"] and self.view["plot"]:
@@ -169,9 +172,8 @@ class TrialView:
     def _reason(self) -> None:
         """Show what the edit would do and ask for its reason."""
         text, entry = self.text, self.view["edits"][-1]
-        ui.label(f"{entry['step']}: {_edit_words(entry)}").classes("step-words").props(
-            'role="status"'
-        )
+        words = Message("{step}: {edit}", step=entry["step"], edit=_edit_words(entry))
+        package_label(words).classes("step-words").props('role="status"')
         why = ui.input(text("trials.why"), validation={text("trials.why_missing"): bool})
         why.without_auto_validation()
         past = dict.fromkeys(each["why"] for each in self.view["edits"][:-1])
@@ -194,7 +196,8 @@ class TrialView:
         title(text("trials.edits"), 2)
         for number, entry in enumerate(edits):
             with ui.element("div").classes("edit"):
-                ui.label(f"{entry['step']}: {_edit_words(entry)}. {entry['why']}")
+                told = {"step": entry["step"], "edit": _edit_words(entry), "why": entry["why"]}
+                package_label(Message("{step}: {edit}. {why}", **told))
                 take = ui.button(text("trials.take_back"))
                 take.on_click(partial(self._keep_edit, {"step": number, "what": "take back"}))
                 take.props("flat no-caps dense")
@@ -249,21 +252,30 @@ def _step_words(step: Mapping[str, Any]) -> str:
     """Return a step's number with its uncertainty, or why it has none."""
     parts = []
     if step["rcof"] is not None:
-        spread = step["rcof_uncertainty"]
-        parts.append(f"RCOF {step['rcof']:.4f}" + (f" ± {spread:.4f}" if spread else ""))
+        rcof = Message("RCOF {rcof:.4f}", rcof=step["rcof"])
+        if spread := step["rcof_uncertainty"]:
+            rcof = Message("{rcof} ± {spread:.4f}", rcof=rcof, spread=spread)
+        parts.append(rcof)
     if step["peak_slipping_speed"] is not None:
-        parts.append(f"peak slipping speed {step['peak_slipping_speed']:.3f} m/s")
+        speed = step["peak_slipping_speed"]
+        parts.append(Message("peak slipping speed {speed:.3f} m/s", speed=speed))
     if step["outcome"]:
-        parts.append(f"{step['outcome']}, {1e3 * step['slip_distance']:.0f} mm")
-    return ", ".join(parts) or step["reason"] or "–"
+        distance = 1e3 * step["slip_distance"]
+        slip = Message("{outcome}, {distance:.0f} mm", outcome=step["outcome"], distance=distance)
+        parts.append(slip)
+    return Message("{parts}", parts=parts) if parts else step["reason"] or "–"
 
 
-def _edit_words(entry: Mapping[str, Any]) -> str:
+def _edit_words(entry: Mapping[str, Any]) -> Message:
     """Return what an edit did: the event and the number before and after."""
-    event = f"{entry['what']} {entry['before']} → {entry['after']}"
+    changed = {name: entry[name] for name in ("what", "before", "after")}
+    event = Message("{what} {before} → {after}", **changed)
     if not entry["quantity"]:
         return event
     numbers = (entry["number_before"], entry["number_after"])
     before, after = ("–" if number is None else f"{number:.4f}" for number in numbers)
-    name = "RCOF" if entry["quantity"] == "rcof" else f"{entry['quantity']} (m/s)"
-    return f"{event}, {name} {before} → {after}"
+    name = Message("RCOF")
+    if entry["quantity"] != "rcof":
+        name = Message("{quantity} (m/s)", quantity=entry["quantity"])
+    number = Message("{name} {before} → {after}", name=name, before=before, after=after)
+    return Message("{event}, {number}", event=event, number=number)

@@ -89,13 +89,17 @@ def read_cad(path: Path, kind: str, unit: str = "auto") -> Mesh:
     )
 
 
+def _reading(kind: str) -> Message:
+    return Message("Reading {kind}", kind=kind)
+
+
 def _meshed_apart(path: Path, kind: str, unit: str) -> Mesh:
     """Return what ``mesh_into`` finds in a process of its own: OCC dies on some damaged files.
 
     Raises:
         InputError, DataError: As ``read_cad``; the process died or took too long.
     """
-    optional_module("netgen", "cad", f"Reading {kind}")
+    optional_module("netgen", "cad", _reading(kind))
     # nothing that it calls is compiled: without Numba it starts in half the time
     call = "import sys; sys.modules['numba'] = None; from underfoot.core.pool import kill_with; "
     call += f"kill_with({os.getpid()}); "  # a reader that is stopped leaves no mesher behind
@@ -186,8 +190,8 @@ def _si_length(line: bytes) -> float | None:
 
 
 def _mesh_solid(path: Path, kind: str, unit: str) -> Mesh:
-    occ = optional_module("netgen.occ", "cad", f"Reading {kind}")
-    meshing = optional_module("netgen.meshing", "cad", f"Reading {kind}")
+    occ = optional_module("netgen.occ", "cad", _reading(kind))
+    meshing = optional_module("netgen.meshing", "cad", _reading(kind))
     with _quiet(meshing.SetMessageImportance):
         geometry = _geometry(occ, path, kind)
         shape = geometry.shape

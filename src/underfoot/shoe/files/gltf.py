@@ -220,7 +220,9 @@ class _Asset:
 
     def _unpack(self, packed: dict[str, Any], shape: dict[str, Any]) -> tuple[Array, Any]:
         """Return vertices and indices that Draco packed, which come as triangles."""
-        draco = optional_module("DracoPy", "cad", f"Reading the extension {_DRACO}")
+        draco = optional_module(
+            "DracoPy", "cad", Message("Reading the extension {name}", name=_DRACO)
+        )
         try:
             mesh = draco.decode(bytes(self._view(packed["bufferView"])[0]))
             own = mesh.get_attribute_by_unique_id(packed["attributes"]["POSITION"])

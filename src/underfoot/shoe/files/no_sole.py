@@ -120,10 +120,16 @@ def check_carried(
     narrow = gaps & (local_width(gaps, spacing) < WIDEST_CHANNEL)
     share = np.count_nonzero(narrow) / np.count_nonzero(inside)
     if share > _OPEN_AROUND:
-        lost = f" (not read: {', '.join(each.what for each in unmet)})" if unmet else ""
+        what = Message(
+            "its {parts} parts are all land, with open channels around: the body that carries them "
+            "is not among those that were taken",
+            parts=parts,
+        )
+        if unmet:
+            lost = [each.what for each in unmet]
+            what = Message("{what} (not read: {lost})", what=what, lost=lost)
         raise DataError(
-            f"its {parts} parts are all land, with open channels around: the body that carries "
-            f"them is not among those that were taken{lost}",
+            what,
             where=where,
             allowed="lugs that touch the body they hang on",
             remedy=unmet[0].remedy
@@ -153,7 +159,7 @@ def _reason(shape: Shape) -> str | None:
     length, width = (
         float(np.ptp(np.nonzero(inside.any(axis=n))[0]) + 1) * shape.spacing for n in (1, 0)
     )
-    size = f"{length * 1e3:.4g} x {width * 1e3:.4g} mm"
+    size = Message("{length:.4g} x {width:.4g} mm", length=length * 1e3, width=width * 1e3)
     heights = shape.height[inside]
     if shape.thickness < _FLAT and float(np.ptp(heights)) < _FLAT:
         return "it is one flat face without thickness and without tread"
@@ -162,22 +168,31 @@ def _reason(shape: Shape) -> str | None:
             "its heights jump by {noise:.2g} mm from place to place, the faces make no surface",
             noise=shape.noise * 1000.0,
         )
-    if not NARROWEST <= width <= WIDEST:
-        return f"it is {size}, {'narrower' if width < NARROWEST else 'wider'} than any"
+    if width < NARROWEST:
+        return Message("it is {size}, narrower than any", size=size)
+    if width > WIDEST:
+        return Message("it is {size}, wider than any", size=size)
     slender = length / width
     if slender > MOST_SLENDER or (length > _LONG and slender < LEAST_SLENDER):
-        return f"it is {size}, {slender:.2g} times as long as wide"
+        return Message("it is {size}, {times:.2g} times as long as wide", size=size, times=slender)
     holes = without_holes(inside) & ~inside
     open_share = np.count_nonzero(holes) / np.count_nonzero(inside | holes)
     if open_share > MOST_OPEN:
         return Message("holes take {open_share:.0%} of its plan form", open_share=open_share)
     tall = shape.tallness > TALL * width
     if shape.standing < (STANDING if tall else TOUCHING):
-        high = f"it is {shape.tallness * 1e3:.3g} mm high, {width * 1e3:.3g} mm wide, and "
-        return (
-            f"{high if tall else ''}only {shape.standing:.0%} of its plan form lies within 2 mm of "
-            "a floor"
+        standing = Message(
+            "only {share:.0%} of its plan form lies within 2 mm of a floor", share=shape.standing
+        )
+        if not tall:
+            return standing
+        return Message(
+            "it is {high:.3g} mm high, {width:.3g} mm wide, and {standing}",
+            high=shape.tallness * 1e3,
+            width=width * 1e3,
+            standing=standing,
         )
     if tall and length < _LONG:
-        return f"it is {shape.tallness * 1e3:.3g} mm high and only {size}"
+        high = shape.tallness * 1e3
+        return Message("it is {high:.3g} mm high and only {size}", high=high, size=size)
     return None

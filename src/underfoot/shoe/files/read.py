@@ -106,7 +106,7 @@ def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
     content = _format_of(head, path)
     if content is None and promised is None:
         raise InputError(
-            f'a file named "{path.name}" is not read',
+            Message('a file named "{name}" is not read', name=path.name),
             where=str(path),
             allowed=FORMATS,
             remedy="Export the outsole as STEP, or a scan as STL",
@@ -263,4 +263,4 @@ def _is_gltf(path: Path) -> bool:
 
 def _first_characters(head: bytes) -> str:
     text = head[:40].split(b"\n")[0].decode("ascii", errors="replace")
-    return f'"{text}"' if text.isprintable() else f"bytes {head[:8].hex(' ')}"
+    return f'"{text}"' if text.isprintable() else Message("bytes {bytes}", bytes=head[:8].hex(" "))

@@ -116,15 +116,15 @@ def length_unit(
     Raises:
         InputError: No unit makes it as long as a sole, or the chosen unit makes it absurd.
     """
-    unit, by = in_file, "by the unit in the file"
+    unit, by = in_file, Message("by the unit in the file")
     origin = Message("as stated in the file")
     if chosen != "auto":
-        unit, by = UNITS[chosen], f"in {chosen}"
+        unit, by = UNITS[chosen], Message("in {unit}", unit=chosen)
         origin = Message("{unit} (chosen)", unit=chosen)
     if unit is not None:
         if not _SHORTEST <= length * unit <= longest:
             raise InputError(
-                f"{by} the sole is {_length(length * unit)} long",
+                Message("{by} the sole is {length} long", by=by, length=_length(length * unit)),
                 where=where,
                 allowed=Message("20 mm to {length}", length=_length(longest)),
                 remedy=_suggestion(length, width),
@@ -134,7 +134,10 @@ def length_unit(
         )
     likely = _likely(length, width)
     if not likely:
-        lengths = ", ".join(f"{_length(length * unit)} in {name}" for name, unit in UNITS.items())
+        lengths = [
+            Message("{length} in {unit}", length=_length(length * unit), unit=name)
+            for name, unit in UNITS.items()
+        ]
         raise InputError(
             Message(
                 "no unit makes it a sole: its length of {length:.4g} would be {lengths}",

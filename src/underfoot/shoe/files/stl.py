@@ -92,9 +92,18 @@ def _text(path: Path) -> MeshFile:
     if mentioned != len(corners) or len(corners) != 3 * facets:
         line = _first_bad_line(data)
         comma = re.search(rb"^\s*vertex\s+[-+\d]+,\d", data, re.IGNORECASE | re.MULTILINE)
+        what = Message(
+            "{facets} facets have {count} readable corners instead of {needed}",
+            facets=facets,
+            count=len(corners),
+            needed=3 * facets,
+        )
+        if line:
+            what = Message(
+                "{what}; the first line that cannot be read is {line}", what=what, line=line
+            )
         raise DataError(
-            f"{facets} facets have {len(corners)} readable corners instead of {3 * facets}"
-            + (f"; the first line that cannot be read is {line}" if line else ""),
+            what,
             where=str(path),
             remedy="Its numbers have decimal commas: export it with decimal points, or binary"
             if comma

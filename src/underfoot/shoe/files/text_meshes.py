@@ -132,9 +132,11 @@ def _rows(lines: list[bytes], widths: set[int], what: str, where: str) -> Array:
         words = line.split()
         if len(words) not in widths or not all(map(_is_number, words)):
             shown = line.strip()[:60].decode("latin-1")
-            comma = ": a comma is no decimal point" if b"," in line else ""
+            wrong = Message('{what} {number} is "{shown}"', what=what, number=number, shown=shown)
+            if b"," in line:
+                wrong = Message("{wrong}: a comma is no decimal point", wrong=wrong)
             raise DataError(
-                f'{what} {number} is "{shown}"{comma}',
+                wrong,
                 where=where,
                 allowed=Message(
                     "{widths} numbers", widths=" or ".join(str(n) for n in sorted(widths))

@@ -71,7 +71,6 @@ _CURA: dict[str, Kind | None] = {
     "cutting_mesh": None,
 }
 _LISTS = {"vertices": ("vertex", ("x", "y", "z")), "triangles": ("triangle", ("v1", "v2", "v3"))}
-_SUBTRACTED = "a volume that takes material away"
 _WITHOUT = "Apply it in the program it comes from, and export the outsole as STL or STEP"
 
 Key = tuple[str, str]
@@ -314,10 +313,14 @@ class _Package:
 
     def _check(self, state: int, count: int, tag: str, names: tuple[str, ...], part: str) -> None:
         if state in (MISSING, NO_NUMBER):
-            lacks = "lacks one of" if state == MISSING else "has no number as"
-            raise self._error(
-                f"{tag} {count} of {part} {lacks} {', '.join(names)}, which the format requires"
+            at = {"tag": tag, "number": count, "part": part, "names": names}
+            lacks = Message(
+                "{tag} {number} of {part} lacks one of {names}, which the format requires", **at
             )
+            no_number = Message(
+                "{tag} {number} of {part} has no number as {names}, which the format requires", **at
+            )
+            raise self._error(lacks if state == MISSING else no_number)
         assert state == COMPLETE
 
     def _read_list(self, mesh: Any, what: str, lists: list[np.ndarray], part: str) -> Array:
@@ -399,12 +402,16 @@ class _Package:
                 placed.append((self._key(child, part, "component"), self._transform(child)))
         else:
             content = next((c.tag for c in each if not str(c.tag).startswith(f"{{{_CORE}}}")), None)
-            what = "a mesh or components"
+            number = each.get("id")
+            what = Message("a mesh or components in object {number}", number=number)
             if content:
+                space = str(content).rpartition("}")[0][1:]
                 what = Message(
-                    "the 3MF extension {title}", title=_title(str(content).rpartition("}")[0][1:])
+                    "the 3MF extension {title} in object {number}",
+                    title=_title(space),
+                    number=number,
                 )
-            self._unmet(f"{what} in object {each.get('id')}", required=True)
+            self._unmet(what, required=True)
         name = each.get("name") or each.get("partnumber") or ""
         return _Object(name, kind, vertices, faces, tuple(placed))
 
@@ -505,7 +512,8 @@ class _Package:
     ) -> FileBody:  # fmt: skip
         if kind is None:
             if shown:
-                self._unmet(f'{_SUBTRACTED} ("{name or layer}")', required=True)
+                taken = Message('a volume that takes material away ("{name}")', name=name or layer)
+                self._unmet(taken, required=True)
             kind = "modifier"
         return FileBody(each.vertices, faces, name, layer, shown, kind, place)
 

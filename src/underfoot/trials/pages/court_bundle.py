@@ -133,7 +133,13 @@ def changed_files(bundle: Path) -> list[Remark]:
     InputError: the folder is no bundle.
     """
     if not (bundle / SUMS).is_file() or not (bundle / SETTINGS).is_file():
-        raise InputError(f"{bundle} is no bundle: {SUMS} or {SETTINGS} is missing", where="--check")
+        what = Message(
+            "{bundle} is no bundle: {sums} or {settings} is missing",
+            bundle=bundle,
+            sums=SUMS,
+            settings=SETTINGS,
+        )
+        raise InputError(what, where="--check")
     lines = (bundle / SUMS).read_text(encoding="utf-8", errors="replace").splitlines()
     pairs = [line.split("  ", 1) for line in lines]
     written = {pair[1]: pair[0] for pair in pairs if len(pair) == 2}
@@ -177,15 +183,18 @@ def _settings(bundle: Path, faults: Sequence[Remark]) -> dict[str, Any]:
         if not lacking:
             return settings
         reason = Message("wrong or missing: {lacking}", lacking=", ".join(lacking))
-    others = [str(fault) for fault in faults if fault.about != SETTINGS]
+    remedy = Message("Ask for the bundle as it was signed")
+    if others := [fault for fault in faults if fault.about != SETTINGS]:
+        remedy = Message(
+            "{remedy}; not as written are also: {others:; }", remedy=remedy, others=others
+        )
     raise InputError(
         Message("is damaged ({reason}), so nothing can be made again", reason=reason),
         where=str(bundle / SETTINGS),
         allowed=Message(
             "the file that trials bundle wrote, an object with {kinds}", kinds=", ".join(kinds)
         ),
-        remedy="Ask for the bundle as it was signed"
-        + (f"; not as written are also: {'; '.join(others)}" if others else ""),
+        remedy=remedy,
     )
 
 

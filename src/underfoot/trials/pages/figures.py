@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from underfoot.core.remark import join_lines
+from underfoot.core.remark import NOTHING, Message, join_lines
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,10 +56,17 @@ def contact_sheets(sheet: TileSheet) -> Iterator[SheetPage]:
     """
     pages = [sheet.tiles[i : i + _PER_PAGE] for i in range(0, len(sheet.tiles), _PER_PAGE)]
     left, right, low, high = (f"{value:.3g}" for value in (*sheet.x_range, *sheet.y_range))
-    dashed = f"; dashed slip above {sheet.line:g} m/s" if sheet.line is not None else ""
-    legend = (
-        f"each tile: {left} to {right} s across, {low} to {high} up{dashed}; "
-        "blue accepted, orange caution, red rejected or refused, with the reason"
+    dashed = NOTHING
+    if sheet.line is not None:
+        dashed = Message("; dashed slip above {limit:g} m/s", limit=sheet.line)
+    legend = Message(
+        "each tile: {left} to {right} s across, {low} to {high} up{dashed}; blue accepted, orange "
+        "caution, red rejected or refused, with the reason",
+        left=left,
+        right=right,
+        low=low,
+        high=high,
+        dashed=dashed,
     )
     for number, page in enumerate(pages, start=1):
         head = sheet.title if len(pages) == 1 else f"{sheet.title} ({number} of {len(pages)})"

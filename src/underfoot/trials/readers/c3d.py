@@ -636,7 +636,7 @@ def _to_si(
         else:
             assumed.add(f'"{written}" as {si}')
     if assumed:
-        notes.append("units assumed: " + ", ".join(sorted(assumed)))
+        notes.append(Message("units assumed: {units}", units=sorted(assumed)))
     return factors
 
 

@@ -187,8 +187,11 @@ def _unit(text: object, dimension: str, where: str) -> str:
     read = force_unit if dimension == "N" else si_unit
     unit = read(text) if isinstance(text, str) else None
     if unit is None or (dimension and unit[0] != dimension):
+        what = Message("{given} is no known unit", given=repr(text))
+        if dimension:
+            what = Message("{given} is no known unit of {unit}", given=repr(text), unit=dimension)
         raise InputError(
-            f"{text!r} is no known unit" + (f" of {dimension}" if dimension else ""),
+            what,
             where=where,
             nearest=nearest_match(str(text), known_units(dimension)),
         )

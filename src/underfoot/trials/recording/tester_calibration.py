@@ -159,7 +159,9 @@ def read_calibration(path: Path) -> TesterCalibration:
     end = tester.get("valid_until")
     record = TesterCalibration(
         str(tester.get("name", "tester")),
-        f"certificate {tester['certificate']}" if "certificate" in tester else "calibration",
+        Message("certificate {number}", number=tester["certificate"])
+        if "certificate" in tester
+        else "calibration",
         day_of(tester.get("date", ""), where=f"{where}, date"),
         None if end is None else day_of(end, where=f"{where}, valid_until"),
         to_si(tester.get("tolerance", "2 %"), "1", where=f"{where}, tolerance"),
@@ -264,6 +266,12 @@ def _check(part: Any, record: TesterCalibration, where: str) -> DailyCheck:
         raise InputError("a check needs a mass or force above 0", where=where)
     share = reading * record.channel("friction" if aside else name).factor / weight
     error, allowed = (share, _CROSSTALK) if aside else (share - 1.0, record.tolerance)
-    words = f"{name} {part['reading']} for {part['reference']} ({100 * error:+.1f} %)"
+    words = Message(
+        "{name} {reading} for {reference} ({error:+.1f} %)",
+        name=name,
+        reading=part["reading"],
+        reference=part["reference"],
+        error=100 * error,
+    )
     day = day_of(part.get("date", ""), where=f"{where}, date")
     return DailyCheck(day, name, error, allowed, words)

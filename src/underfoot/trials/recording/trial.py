@@ -365,7 +365,9 @@ def _find_name(kind: str, names: tuple[str, ...], known: Mapping[str, _T], where
         if _fold_name(name) in folded:
             return folded[_fold_name(name)]
     listed = list(known)
-    shown = ", ".join(listed[:12]) + (f" and {len(listed) - 12} more" if len(listed) > 12 else "")
+    shown = Message("{names}", names=listed)
+    if (more := len(listed) - 12) > 0:
+        shown = Message("{names} and {more} more", names=listed[:12], more=more)
     raise DataError(
         Message("no {kind} named {names}", kind=kind, names=" or ".join(names)),
         where=where,

@@ -373,7 +373,10 @@ def one_spelling(noted: Sequence[dict[str, Any]], merge: bool) -> None:
         for counts in spellings.values():
             if len(counts) < 2:
                 continue
-            written = ", ".join(f'"{text}" ({n} files)' for text, n in counts.most_common())
+            written = [
+                Message('"{text}" ({count} files)', text=text, count=count)
+                for text, count in counts.most_common()
+            ]
             if not merge:
                 raise InputError(
                     Message("{key} is written {written}", key=key, written=written),

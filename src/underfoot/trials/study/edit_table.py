@@ -60,7 +60,8 @@ def edit_rows(
             continue
         if file is None:
             nearest = nearest_match(name, labels)
-            raise EditError(f'there is no file "{name}"', where=where, nearest=nearest)
+            what = Message('there is no file "{name}"', name=name)
+            raise EditError(what, where=where, nearest=nearest)
         edit = edit_from(step, what, value, why, where, cells["value"][0])
         edits.append((line, file, edit))
     return edits

@@ -43,9 +43,9 @@ class ClassScheme:
         read = (
             Message("read at {source}", source=self.source)
             if self.source
-            else "from memory, not verified"
+            else Message("from memory, not verified")
         )
-        return f"{self.rule} ({read})"
+        return Message("{rule} ({read})", rule=self.rule, read=read)
 
 
 _NO_LIMIT = "below the limit"

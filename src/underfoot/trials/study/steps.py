@@ -61,10 +61,16 @@ def _check_kind(trial: Trial, protocol: Protocol, profile: TrialsProfile) -> Non
     up = axes_of(trial, vertical=profile.vertical).up
     kinds = {log_kind(plate, up) for plate in trial.plates if plate.usable} - {""}
     if kinds == {"slide" if steps else "walk"}:
-        seen = "a slide of a slip tester" if steps else "a walking step"
+        meant = {"name": protocol.name, "kind": KINDS[protocol.kind]}
+        what = Message("the forces are those of a walking step, and {name} is for {kind}", **meant)
+        if steps:
+            what = Message(
+                "the forces are those of a slide of a slip tester, and {name} is for {kind}",
+                **meant,
+            )
         other = "en_iso_13287 or a protocol of your tester" if steps else "level_walking"
         raise DataError(
-            f"the forces are those of {seen}, and {protocol.name} is for {KINDS[protocol.kind]}",
+            what,
             where=trial.name,
             remedy=Message("Use --protocol {other}", other=other),
         )

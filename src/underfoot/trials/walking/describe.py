@@ -266,9 +266,11 @@ def _edit_words(edit: Edit) -> str:
     return f"{edit.step_words}: {f'{edit.what} {value}'.rstrip()} ({edit.why})"
 
 
-def _some(names: Sequence[str], most: int = _SHOWN) -> str:
+def _some(names: Sequence[str], most: int = _SHOWN) -> Message:
     more = len(names) - most
-    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
+    if more <= 0:
+        return Message("{names}", names=names)
+    return Message("{names} and {more} more", names=names[:most], more=more)
 
 
 def _parts(thing: object, names: str) -> dict[str, Any]:
