@@ -5,6 +5,7 @@ Of ``underfoot.case.describe``, ``underfoot.case.schema``, ``underfoot.case.tabl
 """
 
 import math
+import re
 from importlib import import_module
 from pathlib import Path
 
@@ -165,7 +166,8 @@ def test_explanations(file_regression, names):
     for name in names.split():
         answer = str(_tried(explanation, name, catalogue))
         lines[name] = "\n".join(answer.splitlines()[:14])
-    lines["unknown"] = refusal(explanation, "tred", catalogue)
+    # how many more names there are depends on the options that other tests have made
+    lines["unknown"] = re.sub(r"\d+ more", "N more", refusal(explanation, "tred", catalogue))
     if "gent" in names:
         full = explanation("youngs_modulus_gent", catalogue, full=True)
         lines["short"] = explanation("youngs_modulus_gent", catalogue)

@@ -58,7 +58,7 @@ def asked(monkeypatch):
 def option(**more) -> Any:
     given = {"file": None, "sha256": None, **more}
     plain = cast(Any, SimpleNamespace(**given))
-    for name in ("build", "table", "_self_affine", "_made"):
+    for name in ("build", "table", "_self_affine", "_new_table"):
         setattr(plain, name, getattr(ContactTableOption, name).__get__(plain))
     return plain
 

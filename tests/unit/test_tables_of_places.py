@@ -103,8 +103,8 @@ def measured(monkeypatch, slips, cof):
     """
     read = {"blank": np.full(cof.size, 0.5) + 1e-9 * np.arange(cof.size) % 7e-9, "hall": cof}
     device = SimpleNamespace(cof=lambda _, name, *__: read[name], fluids=("water",))
-    monkeypatch.setattr(choice, "machines", lambda: {choice.CHECKED[0][0]: device})
-    monkeypatch.setattr(choice, "slip_tests", lambda: {choice.CHECKED[1][0]: None})
+    monkeypatch.setattr(choice, "machines", lambda: {choice.CHECKED[0]: device})
+    monkeypatch.setattr(choice, "slip_tests", lambda: {choice.CHECKED[1]: None})
     joint = SimpleNamespace(
         count=cof.size,
         constants=SimpleNamespace(sd_reading=0.0),

@@ -83,6 +83,8 @@ class Texture:
         ratio = Message("Str {ratio:.2g}", ratio=self.ratio)
         if self.bounded:
             ratio = Message("Str at most {ratio:.2g}", ratio=self.ratio)
+        if not self.lays:
+            return ratio
         return Message(
             "{ratio}, {count:lay|lays} at {angles} from x",
             ratio=ratio,
