@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from underfoot.core.errors import Cancelled, error_text
+from underfoot.core.remark import from_stored, stored_form
 from underfoot.core.unit_text import SYSTEMS, UNITS_VARIABLE
 from underfoot.core.worker import Job, Worker
 
@@ -296,6 +297,7 @@ class JobQueue:
 
     def _write_line(self, task: QueuedTask) -> None:
         line = {name: getattr(task, name) for name in KEPT if getattr(task, name)}
+        line |= {"problem": stored_form(task.problem)} if task.problem else {}
         with suppress(OSError):  # a full disk: the job goes on, after a restart it is interrupted
             append_line(self._file, _move_paths(line, str(self._file.parent), PROJECT))
         for number in [n for n, each in self.tasks.items() if not each.open][:-SHOWN]:
@@ -306,6 +308,7 @@ class JobQueue:
             if isinstance(line.get("number"), int):
                 here = _move_paths(line, PROJECT, str(self._file.parent))
                 fields = {name: value for name, value in here.items() if name in KEPT}
+                fields["problem"] = from_stored(fields.get("problem", ""))
                 self.tasks[line["number"]] = QueuedTask(**{"title": "", **fields})
         for task in list(self.tasks.values()):  # old ones are forgotten meanwhile
             if task.open:

@@ -281,14 +281,14 @@ def _summary(record: FileResult) -> dict[str, Any]:
     }
 
 
-def _numbers(record: FileResult) -> list[str]:
+def _numbers(record: FileResult) -> list[Message]:
     """Return the main numbers of a file in words, with units."""
     texts = []
     for name, value in record.main.items():
         text = f"{scale_to_heading(name, value):.3g} {shown_unit(name)}".strip()
         if name in ("slip", "crossed_array"):
             text = "yes" if value else "no"
-        texts.append(f"{quantity_name(name)} {text}")
+        texts.append(Message("{quantity} {value}", quantity=quantity_name(name), value=text))
     return texts
 
 

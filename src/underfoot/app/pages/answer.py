@@ -504,4 +504,4 @@ def _capital(sentence: str) -> str:
 def _alert(problem: str) -> None:
     """Say a problem where there is one."""
     if problem:
-        ui.label(problem).classes("problem problem-what").props('role="alert"')
+        package_label(problem).classes("problem problem-what").props('role="alert"')

@@ -12,6 +12,7 @@ from underfoot.core.remark import from_stored
 
 from ..components import drop_zone, interruption, sentences, table, task_line, title
 from ..jobs import QueuedTask
+from ..labels import package_label
 from ..session import Session
 
 ROUTE = "/place"
@@ -70,7 +71,7 @@ class _Place:
         self.show(name)
         if task.problem:
             with self.answer:
-                ui.label(task.problem).classes("caution")
+                package_label(task.problem).classes("caution")
 
     def show(self, name: str) -> None:
         """Show the stored answer of a place, or that there is none."""
@@ -93,7 +94,7 @@ class _Place:
                 printed.props("flat no-caps dense")
                 self.compute_button(name, "place.again")
             picture = ui.image(shown["picture"]).style("max-width: 44rem")
-            picture.props(f'alt="{shown["heading"]}"')
+            picture.props(f'alt="{self.text("place.title")}: {name}"')
             for each in shown["tables"]:
                 table(each)
             for heading, lines in shown["remarks"].items():

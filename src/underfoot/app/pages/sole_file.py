@@ -11,7 +11,7 @@ from nicegui import ui
 
 from underfoot.core import InputError
 from underfoot.core.errors import Cancelled
-from underfoot.core.remark import Message, is_assumed
+from underfoot.core.remark import Message, is_assumed, together
 from underfoot.core.worker import Job
 
 from ..components import SoleView, drop_zone, sentences, table
@@ -146,7 +146,8 @@ class _Inspection:
         self.busy = False
         self.reading.clear()
         self.view.show(answer["html"])
-        values = {"measures": " ".join(answer["headline"])}
+        measures = together(answer["headline"])
+        values = {"measures": {"text": measures, "message": measures.page_mark()}}
         ui.run_javascript(f"showTexts({as_json(values)})")
         with self.reading:
             sentences(answer["headline"])

@@ -12,7 +12,7 @@ from nicegui import ui
 
 from underfoot.core import InputError
 from underfoot.core.errors import UnderfootError
-from underfoot.core.remark import join_lines
+from underfoot.core.remark import Message, join_lines
 
 from ..components import sentences, table, task_line, title
 from ..jobs import QueuedTask
@@ -105,7 +105,7 @@ class FolderView:
         text = self.text
         self.cards = view["cards"]
         self.study.files = [card["file"] for card in self.cards]
-        ui.label(view["lead"]).classes("lead")
+        package_label(view["lead"]).classes("lead")
         sentences(view["notes"], "soft")
         with ui.element("div").classes("chips"):
             for verdict in ("", "accepted", "caution", "refused"):
@@ -158,7 +158,7 @@ class FolderView:
             ui.label(card["file"]).classes("name")
             if card["svg"]:
                 ui.html(card["svg"], sanitize=False)
-            ui.label(" · ".join(card["numbers"][:2])).classes("number")
+            package_label(Message("{numbers: · }", numbers=card["numbers"][:2])).classes("number")
             ui.label(card["noted"]).classes("soft")
             words = [self.text("trials.edited", count=card["edits"])] if card["edits"] else []
             if card["verdict"] != "accepted":

@@ -116,7 +116,7 @@ class TrialView:
         with ui.element("div").classes("trial-summary"):
             ui.label(text(f"trials.{view['verdict']}")).classes(f"tag is-{view['verdict']}")
             for words in view["numbers"]:
-                ui.label(words).classes("number")
+                package_label(words).classes("number")
             ui.label(", ".join(f"{n}: {v}" for n, v in view["conditions"].items())).classes("soft")
             self._step_chips()
         sentences(view["reasons"], "reason")

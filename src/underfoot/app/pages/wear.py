@@ -14,6 +14,7 @@ from underfoot.core.units import to_si
 
 from ..components import interruption, sentences, show_refillable, table, task_line
 from ..inputs import read_field
+from ..labels import package_label
 from ..session import Session
 
 WORN = "underfoot.app.work:worn"
@@ -54,7 +55,7 @@ def _fill_dialog(session: Session, name: str, again: Any) -> None:
             button.disable()
             task_line(session, task, again)
         elif task is not None and task.problem:
-            ui.label(task.problem).classes("problem problem-what").props('role="alert"')
+            package_label(task.problem).classes("problem problem-what").props('role="alert"')
         elif (shown := _read_stored_wear(session, name)) is not None:
             sentences(shown["headline"])
             sentences(shown["cautions"], "caution")

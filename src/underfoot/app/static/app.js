@@ -153,7 +153,11 @@ addEventListener("edge", ({ target: viewer, detail: { out, normal, done } }) => 
 // Put words into every element that waits for them by name.
 function showTexts(texts) {
   for (const [name, text] of Object.entries(texts)) {
-    for (const part of document.querySelectorAll(`[data-live="${name}"]`)) part.textContent = text;
+    for (const part of document.querySelectorAll(`[data-live="${name}"]`)) {
+      if (text.message) part.dataset.message = text.message; // by which it is put into the language
+      else delete part.dataset.message;
+      part.textContent = text.text ?? text;
+    }
   }
 }
 
