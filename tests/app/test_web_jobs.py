@@ -48,6 +48,8 @@ def test_jobs_run_in_order_and_say_what_went_wrong(tmp_path):
     assert (one.answer, two.answer, last.answer) == (2, 4, 6)
     assert bad.state == "failed"
     assert bad.problem == "motion.speed: too fast. Allowed: at most 5 m/s."
+    read = JobQueue(tmp_path).tasks[bad.number].problem
+    assert (read, read.page_data()) == (bad.problem, bad.problem.page_data())
     assert "died" in dead.problem
     assert one.ended <= two.began
 
