@@ -33,6 +33,12 @@ LONGEST = 400
 """Numbers of one name, beyond which it is a table of data, which has tests of its own."""
 
 
+class Name(str):
+    """The field of an object that the numbers behind it stand in."""
+
+    __repr__ = str.__str__
+
+
 def numbers(value: Any, seen: tuple[int, ...] = ()) -> Iterator[Any]:
     """Yield the numbers in a value, in their order; sets in the order of their text."""
     if id(value) in seen:
@@ -58,7 +64,8 @@ def numbers(value: Any, seen: tuple[int, ...] = ()) -> Iterator[Any]:
         yield from numbers(value.__metadata__, seen)
     elif is_dataclass(value) and not isinstance(value, type):
         for field in fields(value):
-            yield from numbers(getattr(value, field.name, None), seen)
+            given = list(numbers(getattr(value, field.name, None), seen))
+            yield from [Name(field.name), *given] if given else ()
     elif hasattr(value, "__slots__") and type(value).__module__.startswith("annotated_types"):
         yield from numbers([getattr(value, name) for name in value.__slots__], seen)
 
