@@ -2,12 +2,14 @@
 
 import errno
 import json
+import math
 import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 import typer
 
@@ -22,7 +24,13 @@ from underfoot.core.presentation import (
     value_text,
 )
 from underfoot.report import figures, plot, write_report
-from underfoot.report.writing import WRITTEN_IN_PART, json_text, write_folder, write_text
+from underfoot.report.writing import (
+    WRITTEN_IN_PART,
+    data_text,
+    json_text,
+    write_folder,
+    write_text,
+)
 
 
 class Answer(Presentable):
@@ -231,3 +239,13 @@ def test_shares_and_quantities_have_no_false_digits():
         "0.0 %", "below 0.1 %", "1.2 %", "50 %", "above 99.9 %", "100 %",
     ]  # fmt: skip
     assert quantity_text(123456.0, "1") == "123456"
+
+
+def test_data_of_a_command_is_json_for_every_program():
+    data = {"a": math.nan, "b": [math.inf, np.float32(0.5)], "straße": (np.nan, Path("x")), 1: None}
+    told = data_text(data)
+    assert told.endswith("}\n")
+    assert '  "straße": [' in told.splitlines()[6]
+    assert json.loads(told, parse_constant=pytest.fail) == {
+        "a": None, "b": [None, 0.5], "straße": [None, "x"], "1": None,
+    }  # fmt: skip

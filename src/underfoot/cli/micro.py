@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from json import dumps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,7 +9,7 @@ import typer
 
 from .guard import say
 from .options import AsJson, Overwrite
-from .output import NOT_USABLE, print_table
+from .output import NOT_USABLE, print_json, print_table
 
 if TYPE_CHECKING:
     from underfoot.block import MicroResult
@@ -113,7 +112,7 @@ def micro(
                 if snapshots:
                     shutil.copytree(pictures, staging, dirs_exist_ok=True)
     if json:
-        print(dumps(content, indent=2, ensure_ascii=False))
+        print_json(content)
     else:
         _show(content, out)
     if not all(result.status.usable for result in results):
@@ -155,10 +154,10 @@ def _write(
     import pandas
 
     from underfoot.report.study_figures import draw_figure
+    from underfoot.report.writing import data_text
     from underfoot.studies.g1 import history_figure
 
-    text = dumps(content, indent=2, ensure_ascii=False)
-    (folder / "micro.json").write_text(text, encoding="utf-8")
+    (folder / "micro.json").write_text(data_text(content), encoding="utf-8")
     histories = {}
     for speed, result in zip(chosen.speeds, results, strict=True):
         history = {name: np.asarray(getattr(result, name)) for name in COLUMNS.values()}

@@ -105,6 +105,13 @@ def finish(
         raise typer.Exit(NOT_USABLE)
 
 
+def print_json(content: Any) -> None:
+    """Print data as JSON."""
+    from underfoot.report.writing import data_text
+
+    print(data_text(content), end="")
+
+
 def show(shown: Presentable, *, everything: bool = False) -> None:
     """Print headline, cautions, tables and remarks."""
     from rich.console import Console

@@ -11,6 +11,7 @@ from underfoot.core.remark import Message
 
 from .guard import say
 from .options import AsJson, Overwrite, Settings, setting
+from .output import print_json
 
 if TYPE_CHECKING:
     from underfoot.shoe.parametric import SoleFile
@@ -102,9 +103,7 @@ def make(
     written = None if out is None else write_sole(shape, out)
     measures = measures_of(shape, written)
     if json:
-        import json as json_text
-
-        print(json_text.dumps(measures, indent=2, ensure_ascii=False))
+        print_json(measures)
     else:
         _show(measures, written)
 

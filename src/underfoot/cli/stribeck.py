@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from json import dumps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,6 +10,7 @@ import typer
 from underfoot.core.remark import Message
 
 from .options import AsJson, CasePath, CatalogueFolders, Overwrite, Settings, load_case
+from .output import print_json
 
 if TYPE_CHECKING:
     from underfoot.calibrate.stribeck_curve import StribeckCurve
@@ -72,7 +72,7 @@ def stribeck(
             _write(curves, staging, f"{given.name}: {curves[0].law}, {pressure}")
     if json:
         content = {"pressure_Pa": load, "curves": [curve.to_dict() for curve in curves]}
-        print(dumps(content, indent=2, ensure_ascii=False))
+        print_json(content)
         return
     _show(curves, pressure, out)
 

@@ -11,7 +11,7 @@ from underfoot.core import InputError
 
 from .guard import guard_command, say
 from .options import AsJson, OutFolder, Overwrite, Quick, ShowAll
-from .output import print_table, show
+from .output import print_json, print_table, show
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -40,7 +40,7 @@ def list_studies(json: AsJson = False) -> None:
         except InputError as error:  # a study of another package that is broken
             say(f"caution: {error.what}")
     if json:
-        _print_json(rows)
+        print_json(rows)
         return
     for row in rows:
         print(f"{row['name']:12s} {row['title']}\n             {row['source']}")
@@ -133,7 +133,7 @@ def errata(
     columns = ("where", "printed", "used", "why")
     rows = [entry for each in chosen for entry in study(each).errata]
     if json:
-        _print_json([dict(zip(columns, row, strict=True)) for row in rows])
+        print_json([dict(zip(columns, row, strict=True)) for row in rows])
         return
     print_table(Table(f"Not taken as printed ({len(rows)})", columns, rows))
 
@@ -214,19 +214,13 @@ def _deliver(
         content: Any = [
             judgement.to_dict() for result in results for judgement in result.judgements
         ]
-        _print_json(content if everything else results[0].to_dict())
+        print_json(content if everything else results[0].to_dict())
     elif everything:
         _show_headline(results)
     else:
         show(results[0], everything=show_all)
     if out is not None and not json:
         print(f"Files in {out}; open {out / page}")
-
-
-def _print_json(content: Any) -> None:
-    import json as json_text
-
-    print(json_text.dumps(content, indent=2, ensure_ascii=False))
 
 
 def _show_headline(results: Sequence[PublishedStudyResult]) -> None:

@@ -12,7 +12,7 @@ from underfoot.core.remark import Message
 
 from .guard import guard_command, say
 from .options import AsJson, On, Overwrite, ShowAll, Workers, optional
-from .output import finish, print_table
+from .output import finish, print_json, print_table
 
 if TYPE_CHECKING:
     from underfoot.explore import Study
@@ -166,7 +166,6 @@ def best(
     json: AsJson = False,
 ) -> None:
     """Print the best designs, with the probability that each has a higher COF than the next."""
-    import json as json_text
     from itertools import pairwise
 
     from underfoot.core.presentation import Table, percent
@@ -179,7 +178,7 @@ def best(
         rows = [known[design.number, design.again] for design in designs]
         for row, chance in zip(rows, [*chances, None], strict=False):
             row["higher_cof_than_next"] = chance
-        print(json_text.dumps(rows, indent=2))
+        print_json(rows)
         return
     table = result.design_table(designs, "Best designs")
     texts = ["" if chance is None else percent(chance) for chance in [*chances, None]]

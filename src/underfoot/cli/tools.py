@@ -1,7 +1,6 @@
 """Commands beside a computation: case files, catalogue, explanations, checks of the program."""
 
 from dataclasses import asdict
-from json import dumps
 from pathlib import Path
 from typing import Annotated
 
@@ -9,7 +8,7 @@ import typer
 
 from .guard import say
 from .options import AsJson, CasePath, CatalogueFolders, Overwrite, catalogue_for, load_case
-from .output import print_table
+from .output import print_json, print_table
 
 
 def new(
@@ -85,7 +84,7 @@ def catalogue(
         raise unknown_name("kind of catalogue entry", kind, KINDS, where="catalogue")
     chosen = {group: known.names(group) for group in ([kind] if kind else KINDS)}
     if json:
-        print(dumps(chosen, indent=2))
+        print_json(chosen)
         return
     for group, names in chosen.items():
         entries = [known.entry(group, name) for name in names]
@@ -142,7 +141,7 @@ def validate(json: AsJson = False) -> None:
     failed = [check.name for check in rows if not check.passed]
     if json:
         content = [asdict(check) | {"relative_error": check.relative_error} for check in rows]
-        print(dumps(content, indent=2))
+        print_json(content)
     else:
         cells = [
             (

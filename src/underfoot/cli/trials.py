@@ -10,6 +10,7 @@ import typer
 from .groups import Group
 from .guard import guard_command, say
 from .options import AsJson, Overwrite, PlateFrame, RampAngle, optional
+from .output import print_json
 from .trials_analyse import analyse, persons
 from .trials_bundle import bundle
 from .trials_curves import curves
@@ -66,9 +67,7 @@ def describe(
         ramp=ramp_from(ramp or "0 deg", plate_frame or "", where="--ramp"),
     )
     if as_json:
-        import json
-
-        print(json.dumps([one.as_dict() for one in description], indent=2, allow_nan=False))
+        print_json([one.as_dict() for one in description])
     else:
         print("\n\n".join(one.text() for one in description))
 

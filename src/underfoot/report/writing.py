@@ -97,6 +97,11 @@ def json_text(shown: Presentable, *, advice: Presentable | None = None) -> str:
     content = _content(shown)
     if advice is not None:
         content["advice"] = _content(advice)
+    return data_text(content)
+
+
+def data_text(content: Any) -> str:
+    """Return data as JSON: null for what is no finite number, text for what JSON does not know."""
     return json.dumps(_finite(content), indent=2, ensure_ascii=False, default=_item) + "\n"
 
 
