@@ -24,6 +24,8 @@ MOST = 12
 LONGEST = 160
 """Characters of a line that holds a whole object."""
 RELATIVE = 1e-5
+FAULT = re.compile(r"\b(Type|Name|UnboundLocal)Error: ")
+"""What no answer holds: it would be a fault of the program, or of the test itself."""
 NUMBER = re.compile(r"(?<![\w#.])[-+−]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+−]?\d+)?")
 RUN = re.compile(rf"(?:{NUMBER.pattern}[\sMLHVCQSTAZmlhvcqstaz,]*){{{MOST + 1},}}")
 SILENT = (
@@ -70,6 +72,7 @@ def held(file_regression: Any, value: Any, name: str | None = None, *, hide: str
     text = re.sub(made, "FOLDER", snapshot_lines(value))
     if hide:
         text = re.sub(hide, "HIDDEN", text)
+    assert not (fault := FAULT.search(text)), text[fault.start() :][:200]
     file_regression.check(
         text, basename=name, encoding="utf-8", extension=".txt", check_fn=same_lines
     )

@@ -86,7 +86,13 @@ def asked(*given, **more):
 
 def march(speed, status=Status.CONVERGED, corrected=2e-6, whole=True):
     ramp = np.linspace(0.0, 1.0, 5)
-    means = MicroAverages(1, 0.02, 0.12, 0.2, 3e-6, corrected, 0.3, 0.2, 1.6e5) if whole else None
+    means = None
+    if whole:
+        means = MicroAverages(
+            cof_hysteresis=0.02, cof_absolute=0.12, cof_resultant=0.2, area_per_force=3e-6,
+            real_contact_fraction=0.3, mean_pressure=1.6e5, wavelengths=2, scatter=0.01,
+            area_per_force_corrected=corrected, real_contact_fraction_corrected=0.2,
+        )  # fmt: skip
     return MicroResult(
         1e-3 * ramp, speed * 1e-3 * ramp, 0.06 * ramp, 0.01 * ramp**2, 0.001 * ramp, 1e-7 * ramp,
         9e-8 * ramp, -1e-5 * ramp, 4e-7, means, None, status, 40, 1e-5, 2.5, (f"a note {speed:g}",),

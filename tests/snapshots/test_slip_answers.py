@@ -124,7 +124,6 @@ REFUSED: list[tuple[Callable[..., Any], tuple[Any, ...]]] = [
     (needed_acof, (0.0,)),
     (needed_acof, (1.0,)),
     (needed_acof, (0.9999999999,)),
-    (_wilson, (3,)),
 ]
 
 
