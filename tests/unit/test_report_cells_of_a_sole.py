@@ -55,3 +55,13 @@ def test_no_reason_of_a_design_ends_the_script_that_it_stands_in():
     shown = explorer(cast(Any, result), cast(Any, [design]))
     assert "<b>" not in shown
     assert "no \\u003c/script>\\u003cb>" in shown
+
+
+@pytest.mark.parametrize(
+    ("length", "width", "tall"), [(0.06, 0.04, 6), (0.12, 0.04, 10), (0.04, 0.06, 4.5)]
+)
+def test_the_picture_of_an_outsole_is_as_tall_as_its_sole_within_a_page(length, width, tall):
+    heel = Heel(length=length, width=width, rear_radius=5e-3, outsole_thickness=0.02)
+    surface = heel_surface(heel, spacing=SIDE)
+    figure = outsole_figure(surface, tread_measures(surface))
+    assert figure.get_size_inches() == pytest.approx([12.5, tall], rel=0.02)

@@ -224,12 +224,11 @@ class SlipPopulation(Presentable):
             )
             rows.append(("Slip start", Message("{start:.0f} ms", start=1e3 * start[0]), remark))
         for name, (label, unit, _, values) in BANDS.items():
-            speeds = self._by(name)
-            if None not in speeds.values():
-                text = Message(
-                    "{speeds: / } m/s", speeds=[f"{speed:.2f}" for speed in speeds.values()]
-                )
-                if max(speed or 0.0 for speed in speeds.values()) < 0.005:
+            every = self._by(name).values()
+            speeds = [speed for speed in every if speed is not None]
+            if len(speeds) == len(every):
+                text = Message("{speeds: / } m/s", speeds=[f"{speed:.2f}" for speed in speeds])
+                if max(speeds) < 0.005:
                     text = Message("below 0.01 m/s")
                 remark = Message(
                     "{values: / } {unit}; without marker",
