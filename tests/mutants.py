@@ -70,7 +70,7 @@ LIBRARIES = (
 )
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 GUARD = 1e-5  # a number below it keeps a division or a rounding safe: twice it changes nothing
-ALIKE = {"min", "max", "hypot", "minimum", "maximum", "gcd", "isinstance", "getattr"}
+ALIKE = {"min", "max", "hypot", "minimum", "maximum", "gcd", "isinstance", "getattr", "swapaxes"}
 OPERATORS: dict[type, tuple[str, str]] = {
     ast.Add: ("+", "-"),
     ast.Sub: ("-", "+"),
@@ -109,6 +109,8 @@ class Faults(ast.NodeVisitor):
 
     def __init__(self, file: str, text: str) -> None:
         self.file, self.text, self.found = file, text, list[Mutant]()
+        self._free = set[int]()
+        """Numbers that may be others: any negative one is the length left over of ``reshape``."""
         self._lines = [0]
         for line in text.encode().splitlines(keepends=True):
             self._lines.append(self._lines[-1] + len(line))
@@ -163,7 +165,7 @@ class Faults(ast.NodeVisitor):
         start, end = self._offsets(node)
         if isinstance(node.value, bool):
             self._change(start, end, str(not node.value))
-        elif isinstance(node.value, int):
+        elif isinstance(node.value, int) and id(node) not in self._free:
             self._change(start, end, str(node.value + 1))
         elif isinstance(node.value, float) and not 0 < node.value < GUARD:
             self._change(start, end, repr(2 * node.value) if node.value else "1.0")
@@ -173,6 +175,8 @@ class Faults(ast.NodeVisitor):
         word = name.attr if isinstance(name, ast.Attribute) else getattr(name, "id", "")
         if word.endswith("Error") or word in ("cast", "field", "info", "warning", "note"):
             return
+        if word == "reshape":
+            self._free |= {id(one.operand) for one in node.args if ast.unparse(one) == "-1"}
         if new := NAMES.get(word):
             end = self._offsets(name)[1]
             self._change(end - len(word), end, new)
