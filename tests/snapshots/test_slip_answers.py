@@ -111,6 +111,7 @@ REFUSED: list[tuple[Callable[..., Any], tuple[Any, ...]]] = [
     (available, (5.001,)),
     (available, (math.nan,)),
     (check_required_friction, (1.001,)),
+    (check_required_friction, ([0.2, math.nan],)),
     (check_required_friction, (-0.001, "there")),
     (deviation, (-0.001, "there")),
     (deviation, (1.001, "there")),

@@ -1,5 +1,6 @@
 """Rows of places, of machines and of what tells two apart, by small answers made by hand."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -9,6 +10,7 @@ import pytest
 from underfoot.core import SourcedValue
 from underfoot.core.presentation import probability_text
 from underfoot.places import choice
+from underfoot.places.calibration import FloorCalibration
 from underfoot.places.choice import BINS, ShoeAnswer, ShoeChoice, _floors, _measurements
 from underfoot.places.machines import MachinePrediction
 from underfoot.questions import comparison, separation
@@ -204,3 +206,20 @@ def test_what_tells_two_apart_stands_surest_first(monkeypatch):
     for separate, order in ((True, [0.9, 0.8, 0.7, 0.6]), (False, [0.8])):
         told = comparison._separations(pair, pair, separate, lambda *_: None)
         assert [one.told for one in told] == order
+
+
+def test_a_calibrated_floor_says_what_its_readings_leave() -> None:
+    before, after = (1e-6, 2e-6, 3e-6), (1.5e-6, 2e-6, 2.5e-6)
+    made = FloorCalibration((), cast(Any, SimpleNamespace(outside=())), before, after, 123.4)
+    assert made.headline() == (
+        "Rq of the floor was 2 um (95 %: 1 to 3) and is 2 um (95 %: 1.5 to 2.5).",
+    )
+    given = replace(made, before=(2e-6,) * 3)
+    assert given.headline() == (
+        "The roughness of the floor is given: the reading narrows the law alone.",
+    )
+    table = made.table()
+    assert table.title == "Draws"
+    assert [*table.columns] == ["quantity", "value"]
+    assert [*map(tuple, table.rows)] == [("equal draws that are left", "123")]
+    assert made.cautions() == ()
