@@ -78,6 +78,14 @@ def held(file_regression: Any, value: Any, name: str | None = None, *, hide: str
     )
 
 
+def tried(call: Callable[..., Any], *args: Any, **options: Any) -> Any:
+    """Return what a call answers, else the error that it ends with, and its text."""
+    try:
+        return call(*args, **options)
+    except Exception as error:  # which one is part of what is held
+        return f"{type(error).__name__}: {error}"
+
+
 def refusal(call: Callable[..., Any], *args: Any, **options: Any) -> str:
     """Return the error that a call must end with, and its text."""
     try:

@@ -7,7 +7,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from snapshot import held, refusal
+from snapshot import held, refusal, tried
 from underfoot.calibrate import Parameter, calibrate_model, compound, law_file, pair_readings
 from underfoot.calibrate.compound import (
     Compound,
@@ -70,10 +70,7 @@ def test_tests_of_one_compound_beside_each_other(file_regression):
     }  # fmt: skip
     for name, values in curves.items():
         curve = RelaxationCurve(np.geomspace(1, 100, len(values)), np.array(values), source=name)
-        try:
-            told[name] = _refuse_rising(curve)
-        except Exception as error:  # how it is refused is what is held
-            told[name] = f"{type(error).__name__}: {error}"
+        told[name] = tried(_refuse_rising, curve)
     held(file_regression, told)
 
 

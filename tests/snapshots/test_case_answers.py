@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from snapshot import held, refusal, snapshot_lines
+from snapshot import held, refusal, snapshot_lines, tried
 from underfoot.case import describe, schema, sole, tables, template, text, versions
 from underfoot.case.case import Case, with_settings
 from underfoot.case.errors import CaseError
@@ -67,13 +67,6 @@ def base(at_home):
 def _held(file_regression, value):
     """Hold a value without the folders of its files."""
     held(file_regression, value, hide=r"(?<![\w>.])/[^\s\"']*/(?=\w)|FOLDER/")
-
-
-def _tried(call, *args, **options):
-    try:
-        return call(*args, **options)
-    except Exception as error:  # which one is held
-        return f"{type(error).__name__}: {error}"
 
 
 def _bounds(field):
@@ -134,8 +127,8 @@ def test_paths(file_regression):
         shoe.tread.depht sensor.rows interface numerics film.model film.sucton name""".split()
     answers = {
         name: {
-            "kind": _short(_tried(path_kind, name)),
-            "unit": _short(_tried(unit_at, name)),
+            "kind": _short(tried(path_kind, name)),
+            "unit": _short(tried(unit_at, name)),
             "nearest": nearest_path(name),
             "unknown": _short(str(unknown_path(name))),
             "sections": [each.__name__ for each in sections_at(name)],
@@ -164,7 +157,7 @@ def test_explanations(file_regression, names):
     catalogue = Catalogue.load()
     lines = {}
     for name in names.split():
-        answer = str(_tried(explanation, name, catalogue))
+        answer = str(tried(explanation, name, catalogue))
         lines[name] = "\n".join(answer.splitlines()[:14])
     # how many more names there are depends on the options that other tests have made
     lines["unknown"] = re.sub(r"\d+ more", "N more", refusal(explanation, "tred", catalogue))
@@ -296,7 +289,7 @@ CHANGES = {
 def test_changed_cases(file_regression, base, part):
     answers, usual = {}, _told(base)
     for name in list(CHANGES)[part::4]:
-        case = _tried(base.replace, CHANGES[name])
+        case = tried(base.replace, CHANGES[name])
         told = case if isinstance(case, str) else _told(case)
         if name != "base" and not isinstance(told, str):
             told = {key: value for key, value in told.items() if _unlike(value, usual[key])}
@@ -375,7 +368,7 @@ def test_laws(file_regression, base, part):
     answers = {}
     for name in list(LAWS)[part::2]:
         context = resolve_context(case := base.replace(LAWS[name]))
-        law = _tried(case.friction.build, context)
+        law = tried(case.friction.build, context)
         speeds, pressure = np.array([0.02, 0.3, 1.0]), np.full(3, 2e5)
         answers[name] = law if isinstance(law, str) else {
             "law": law.pair if name.startswith("pair") else None,
@@ -500,7 +493,7 @@ REFUSED = {
 def test_refused(file_regression, base):
     answers = {}
     for name, each in REFUSED.items():
-        answer = _tried(base.replace, each)
+        answer = tried(base.replace, each)
         answers[name] = answer if isinstance(answer, str) else repr(answer)
     _held(file_regression, answers)
 
@@ -558,10 +551,10 @@ JUST_BEYOND = {
 
 def test_ends_of_what_fits(base):
     """What just fits is taken, what just does not is refused."""
-    refused = {name: _tried(base.replace, each) for name, each in TAKEN.items()}
+    refused = {name: tried(base.replace, each) for name, each in TAKEN.items()}
     assert {name: each for name, each in refused.items() if isinstance(each, str)} == {}
     taken = [name for name, each in JUST_BEYOND.items()
-             if not isinstance(_tried(base.replace, each), str)]  # fmt: skip
+             if not isinstance(tried(base.replace, each), str)]  # fmt: skip
     assert taken == []
 
 
@@ -593,7 +586,7 @@ def test_files(file_regression, tmp_path):
     for name, written in FILES.items():
         path = Path(f"{name.replace(' ', '_')}.toml")
         path.write_text(written, encoding="utf-8")
-        case = _tried(Case.load, path)
+        case = tried(Case.load, path)
         answers[name] = case
         if not isinstance(case, str):
             changed = case.replace({"motion.speed": 0.4, "shoe.tread.depth": "2.5 mm"})
@@ -653,7 +646,7 @@ def test_programs(file_regression, base):
         "missing": refusal(Case, shoe="work_shoe_full_tread"),
         "none": refusal(Case, **{k: v for k, v in BASE.items() if k != "contaminant"}),
         "names": [base.replace(each).name for each in CHANGES.values()
-                  if not isinstance(_tried(base.replace, each), str)][:6],
+                  if not isinstance(tried(base.replace, each), str)][:6],
         "settings": with_settings(BASE, {"models.friction": "pair", "motion.speed": 1.0}),
         "several": str(CaseError(_tried_errors(base))),
     })  # fmt: skip
@@ -756,8 +749,8 @@ def test_tables(file_regression, base):
         Path(name).write_text(written, encoding="utf-8")
     answers = {
         name: {
-            "friction": _tried(read_friction_table, Path(name), "friction.table_file"),
-            "motion": _tried(read_motion_table, Path(name), "motion.history"),
+            "friction": tried(read_friction_table, Path(name), "friction.table_file"),
+            "motion": tried(read_motion_table, Path(name), "motion.history"),
             "source": tables.table_source(Path(name)),
         }
         for name in TABLES
@@ -801,7 +794,7 @@ def test_files_of_parts(file_regression, base):
     Path("scan.csv").write_text(f"x (mm),z (um)\n{rows}\n", encoding="utf-8")
     answers = {}
     for name in COMPOUNDS:
-        case = _tried(base.replace, "shoe.material.file", name)
+        case = tried(base.replace, "shoe.material.file", name)
         answers[name] = case if isinstance(case, str) else {
             "rows": [row for row in case.rows() if row[0].startswith("shoe.material")
                      and row[0].rpartition(".")[2] not in ("file", "sha256")],
@@ -833,7 +826,7 @@ def test_small_things(file_regression):
     _held(file_regression, {
         "rings": [[[np.round(ring.mean(axis=0), 6).tolist(), len(ring)] for ring in part]
                   for pair in rings for part in pair],
-        "letters": [_tried(check_text, each, "x") for each in ("GRIP", "", "---", "A" * 24,
+        "letters": [tried(check_text, each, "x") for each in ("GRIP", "", "---", "A" * 24,
                     "A" * 25,
                     "a_b", "Ä/1?")],
         "keeps": {name: [key for key in TERMS if keeps(name, key)] for name in (

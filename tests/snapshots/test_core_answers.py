@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from snapshot import held, refusal
+from snapshot import held, refusal, tried
 from underfoot.core import (
     InputError,
     checks,
@@ -76,13 +76,6 @@ def _folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("UNDERFOOT_UNITS", "UNDERFOOT_CATALOGUE", "UNDERFOOT_SPARSE", "UNDERFOOT_FFT"):
         monkeypatch.delenv(name, raising=False)
-
-
-def _tried(call, *args, **options):
-    try:
-        return call(*args, **options)
-    except Exception as error:  # which one is held
-        return f"{type(error).__name__}: {error}"
 
 
 TYPED = (
@@ -166,21 +159,21 @@ ASKED = (
 def test_numbers_and_units(file_regression, monkeypatch):
     answers = {
         "typed": {
-            t: (_tried(typed.split_quantity, t), _tried(typed.split_quantity, t, comma=True))
+            t: (tried(typed.split_quantity, t), tried(typed.split_quantity, t, comma=True))
             for t in TYPED
         },
         "signs": [typed.plain_signs(t) for t in ("−1 234\u200b mm", "a\tb", "–5")],
         "lost": [typed.is_lost(*each) for each in ((0.0, "1e-400"), (0.0, "0.0e5"), (1.0, "1"))],
         "si": {
-            f"{given} in {unit}": _tried(units.to_si, given, unit, where="here")
+            f"{given} in {unit}": tried(units.to_si, given, unit, where="here")
             for given, unit in ASKED
         },
         "unit of": {
-            t: _tried(units.si_unit, t, where="here")
+            t: tried(units.si_unit, t, where="here")
             for t in ("219 cP", "3 mm", "5", "2 rad/s", "4 1/mm", "70 kg", "5 blub", "x")
         },
         "spread": [
-            _tried(units.spread_to_si, *each, where="here")
+            tried(units.spread_to_si, *each, where="here")
             for each in (
                 ("2 degC", "20 degC", "K"),
                 ("3.6 degF", "68 degF", "K"),
@@ -192,7 +185,7 @@ def test_numbers_and_units(file_regression, monkeypatch):
             )
         ],
         "percent": [
-            _tried(units.refuse_percent, each, where="here") for each in ("5 %", "5", 5, "1,234 %")
+            tried(units.refuse_percent, each, where="here") for each in ("5 %", "5", 5, "1,234 %")
         ],
     }
     sizes = (
@@ -271,9 +264,9 @@ COLUMNS = (
 
 def test_columns_of_numbers(file_regression):
     answers = {
-        "alone": {" | ".join(c): _tried(number_forms, [c], "a.csv") for c in COLUMNS},
+        "alone": {" | ".join(c): tried(number_forms, [c], "a.csv") for c in COLUMNS},
         "beside": [
-            _tried(number_forms, [list(c), d], "a.csv")
+            tried(number_forms, [list(c), d], "a.csv")
             for c in (("1,075",), ("1.075",))
             for d in (["0.5"], ["0,5"], ["1.234.567"], ["1,234,567"])
         ],
@@ -283,7 +276,7 @@ def test_columns_of_numbers(file_regression):
             for d, t in ((".", False), (",", False), (",", True))
         ],
         "numbers": [
-            _tried(numbers_text.column_numbers, cells, NumberForm())
+            tried(numbers_text.column_numbers, cells, NumberForm())
             for cells in (["1", "nan", "-", "2.5"], ["1", "x"], ["1e-400"])
         ],
         "lost": [numbers_text.any_lost(rows) for rows in (["1 2e-400"], ["0e-400"], ["1e-300"])],
@@ -293,7 +286,7 @@ def test_columns_of_numbers(file_regression):
         ),
         "without": numbers_text.without_units(["45 %", "a", "5 mm"], {0: "%", 2: "cm", 7: "m"}),
         "one": [
-            _tried(numbers_text.one_unit, each, lambda a, b: a == b, "c.csv")
+            tried(numbers_text.one_unit, each, lambda a, b: a == b, "c.csv")
             for each in (["", "mm", "mm"], ["mm", "cm"], ["", "[-]"], ["", ""], [])
         ],
         "codes": [
@@ -329,7 +322,7 @@ def test_columns_of_numbers(file_regression):
         "excerpt": [text.excerpt(c) for c in ("short", "x" * 41, "a\x00b", "y" * 40)],
         "content": text.with_content([(1, "a"), (2, " "), (3, "# b"), (4, " #c"), (5, "d#")]),
         "decoded": [
-            _tried(text.decode_text, d, "f")
+            tried(text.decode_text, d, "f")
             for d in (
                 b"abc",
                 "ä".encode(),
@@ -342,7 +335,7 @@ def test_columns_of_numbers(file_regression):
                 "a longer text".encode("utf-16-be"),
             )
         ],
-        "not there": [_tried(text.existing, "x.csv"), _tried(text.numbered_lines, "x.csv", "r")],
+        "not there": [tried(text.existing, "x.csv"), tried(text.numbered_lines, "x.csv", "r")],
         "python": of_python({"a": np.float64(1.5), "b": [np.arange(2), (np.int64(3), "c")]}),
         "scalars": (scalar_or_array(np.float64(2)), scalar_or_array(np.arange(2.0))),
     }
@@ -578,9 +571,9 @@ def test_checks_and_errors(file_regression):
         "host": (checks.host_array, (([1, 2], "a", "numbers"),)),
     }
     answers = {
-        name: [_tried(call, *given) for given in cases] for name, (call, cases) in calls.items()
+        name: [tried(call, *given) for given in cases] for name, (call, cases) in calls.items()
     }
-    answers["zero"] = [_tried(checks.positive_array, v, "a", zero=True) for v in ([0, 1], [-1])]
+    answers["zero"] = [tried(checks.positive_array, v, "a", zero=True) for v in ([0, 1], [-1])]
     whole = errors.InputError(
         "x is wrong", where="a.b", allowed="1 to 2", nearest="y", remedy="Write y"
     )
@@ -684,11 +677,11 @@ def test_hashes_and_names(file_regression):
         "homes": moved.HOMES,
         "unknown": refusal(get, "nothing"),
         "address": [
-            _tried(registry.load_address, a)
+            tried(registry.load_address, a)
             for a in ("no_such_module:x", "json:nothing", "underfoot.core.status:nothing")
         ],
         "offers": [
-            _tried(registry.find_offer, "doors", "x"),
+            tried(registry.find_offer, "doors", "x"),
             registry.offers("nothing_of_this_kind"),
         ],
     }
@@ -772,7 +765,7 @@ def test_catalogues(file_regression):
         "names": [n for n in mine.names("floor") if n in ("mine", "soaked")],
         "content": mine.content()["floor.soaked"],
         "refused": [
-            _tried(call)
+            tried(call)
             for call in (
                 lambda: vinyl.leaf("film.gaps"),
                 lambda: vinyl.numbers("film.gap"),
@@ -799,7 +792,7 @@ def test_catalogues(file_regression):
         "no title": ('title = "Vinyl"\n', ""),
     }.items():
         Path("own/mine.toml").write_text(TOML.replace(old, new))
-        answers["files"][name] = _tried(
+        answers["files"][name] = tried(
             lambda: Catalogue.load(["own"]).of(["floor"]).describe("mine")
         )
     Path("catalogue").mkdir()
@@ -856,7 +849,7 @@ def test_files_and_fields(file_regression, monkeypatch):
     with pytest.raises(InputError, match=r'no file marked\.tml. Did you mean "marked.toml"'):
         read_toml(Path("marked.tml"))
     Path("x.toml").write_text("a = \n")
-    answers["toml"] = _tried(read_toml, Path("x.toml")).partition(" (")[0]
+    answers["toml"] = tried(read_toml, Path("x.toml")).partition(" (")[0]
     made = fields.labelled_fields(
         {
             "p": (("x", "y"), np.arange(6.0).reshape(2, 3), {"units": "Pa"}),

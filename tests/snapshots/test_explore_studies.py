@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from small_pads import BARS, DRY, pad
-from snapshot import held, refusal
+from snapshot import held, refusal, tried
 from underfoot.case import Case
 from underfoot.core import DataError
 from underfoot.core.catalogue import Catalogue
@@ -566,10 +566,7 @@ def test_inputs(file_regression, tmp_path):
         ("contaminant", ["milk"]),
         ("shoe.tread.pattern", ["dots"]),
     ):
-        try:
-            said[f"vary {path} {given}"] = read_input(path, given, known)
-        except Exception as error:  # how it is refused is held too
-            said[f"vary {path} {given}"] = f"{type(error).__name__}: {error}"
+        said[f"vary {path} {given}"] = tried(read_input, path, given, known)
     for path, given in (
         (speed, {"normal": "0.3 m/s", "sd": "0.05 m/s"}),
         (speed, {"lognormal": "0.3 m/s", "factor": 1.3}),
@@ -585,10 +582,7 @@ def test_inputs(file_regression, tmp_path):
         ("motion.shoe_angle", {"lognormal": "-1 deg", "factor": 1.2}),
         ("shoe.tread.pattern", {"normal": "bars", "sd": "bars"}),
     ):
-        try:
-            said[f"uncertain {path} {given}"] = read_distribution(path, given, known)
-        except Exception as error:  # how it is refused is held too
-            said[f"uncertain {path} {given}"] = f"{type(error).__name__}: {error}"
+        said[f"uncertain {path} {given}"] = tried(read_distribution, path, given, known)
     said["choices"] = read_choice(shore, (50, 60.5), known)
     said["value"] = value_at("floor", "vinyl_g4", known), refusal(value_at, "floor", 3, known)
     why = refusal(read_joint_draws, tmp_path / "draws.csv")

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from snapshot import held, refusal
+from snapshot import held, refusal, tried
 from underfoot.material import _hardness, curves, durometer_scales, master_curve, spectrum_fit
 from underfoot.material.bs903_1950 import bs903_breaches, youngs_modulus_bs903
 from underfoot.material.curves import DynamicSweep, RelaxationCurve, checked_curve, minimum_on
@@ -50,13 +50,6 @@ W = np.geomspace(1e-2, 1e4, 25)
 FORMS = Path(__file__).parents[1] / "data" / "rubber_forms"
 
 
-def _tried(call, *args, **options):
-    try:
-        return call(*args, **options)
-    except Exception as error:  # which one is held
-        return f"{type(error).__name__}: {error}"
-
-
 def test_hardness(file_regression):
     shore = np.array([0.0, 29.9, 30.0, 40.0, 60.0, 80.1, 95.1, 99.9])
     answers = {
@@ -96,7 +89,7 @@ def test_hardness(file_regression):
         "60 60",
         "",
     ):
-        reading = _tried(durometer_reading, text, where="shoe.hardness")
+        reading = tried(durometer_reading, text, where="shoe.hardness")
         answers["readings"][text] = (
             reading
             if isinstance(reading, str)
@@ -157,7 +150,7 @@ def test_moduli_and_spectra(file_regression):
         "power law": power_law_spectrum(1e6, 0.12, shortest_time=1e-3, longest_time=1.0),
         "ripple": power_law_spectrum(1e6, 0.3, shortest_time=1e-2, terms_per_decade=1),
         "refused": [
-            _tried(call)
+            tried(call)
             for call in (
                 lambda: shear_modulus(1.0, 0.51),
                 lambda: shear_modulus(1.0, -1.0),
@@ -230,7 +223,7 @@ def test_curves_and_fits(file_regression, monkeypatch):
         "least": minimum_on(np.linspace(-2, 3, 11), lambda x: (x - 1.234) ** 2, 1e-9),
         "sorted": checked_curve([3, 1, 2, 4], [1, 2, 3, 4], quantity="storage modulus"),
         "refused": [
-            _tried(call)
+            tried(call)
             for call in (
                 lambda: checked_curve([1, 2, 3], [1, 2]),
                 lambda: checked_curve([1, 2, 3], [1, 2, 3]),
@@ -292,7 +285,7 @@ def test_master_curves(file_regression):
         "flat": best_shift(np.arange(9.0), np.ones((1, 9)), np.arange(9.0), np.ones((1, 9))),
         "spectrum": len(master.spectrum(terms_per_decade=1, noise=0.01).spectrum),
         "refused": [
-            _tried(call)
+            tried(call)
             for call in (
                 lambda: dynamic_master_curve(sweeps, shift_by="loss"),
                 lambda: dynamic_master_curve(sweeps[:1]),
@@ -321,12 +314,12 @@ def test_files_of_rubbers(monkeypatch, file_regression):
     for path in sorted(Path().iterdir()):
         if path.suffix == ".md":
             continue
-        answers[path.name] = _tried(read_rubber, path)
+        answers[path.name] = tried(read_rubber, path)
         if isinstance(answers[path.name], str) or path.name.startswith("prony"):
             units = {"modulus_unit": "MPa", "instantaneous_modulus": 8e6}
-            answers[f"{path.name} of MPa"] = _tried(read_rubber, path, **units)
+            answers[f"{path.name} of MPa"] = tried(read_rubber, path, **units)
     answers["prony"] = [
-        _tried(read_prony, Path("prony_fractions.csv"), **levels)
+        tried(read_prony, Path("prony_fractions.csv"), **levels)
         for levels in (
             {},
             {"instantaneous_modulus": 8e6},
@@ -334,8 +327,8 @@ def test_files_of_rubbers(monkeypatch, file_regression):
             {"equilibrium_modulus": 2e6, "shear": True, "poisson_ratio": 0.45},
         )
     ]
-    answers["sweeps"] = _tried(read_dynamic, Path("reptate_25.osc"))
-    answers["curves"] = _tried(read_relaxation, Path("reptate.gt"))
+    answers["sweeps"] = tried(read_dynamic, Path("reptate_25.osc"))
+    answers["curves"] = tried(read_relaxation, Path("reptate.gt"))
     held(file_regression, answers)
 
 
@@ -458,7 +451,7 @@ def test_tables(tmp_path, monkeypatch, file_regression):
     for name, text in TABLES.items():
         path = Path("rubber.csv")
         path.write_text(text, encoding="utf-8")
-        tables = _tried(read_tables, path)
+        tables = tried(read_tables, path)
         answers[name] = {
             "tables": tables
             if isinstance(tables, str)
@@ -471,10 +464,10 @@ def test_tables(tmp_path, monkeypatch, file_regression):
                 )
                 for table in tables
             ],
-            "rubber": _tried(read_rubber, path),
+            "rubber": tried(read_rubber, path),
         }
         if name in ("without units", "fractions", "too many", "all", "with rest"):
-            answers[name]["told"] = _tried(
+            answers[name]["told"] = tried(
                 read_rubber,
                 path,
                 modulus_unit="MPa",
@@ -485,7 +478,7 @@ def test_tables(tmp_path, monkeypatch, file_regression):
         cell: (heading_of(cell), quantity_of(heading_of(cell)[0]), without_logarithm(cell))
         for cell in HEADINGS
     }
-    answers["not there"] = _tried(read_rubber, Path("rubbr.csv"))
+    answers["not there"] = tried(read_rubber, Path("rubbr.csv"))
     held(file_regression, answers)
 
 
@@ -594,16 +587,16 @@ def test_decks(tmp_path, monkeypatch, file_regression):
             assert old in text, name
             path = Path(f"rubber.{ending}")
             path.write_text(text.replace(old, new, 1), encoding="utf-8")
-            answers[f"{ending} {name}"] = _tried(read_deck, path, "MPa")
-        answers[f"{ending} without unit"] = _tried(read_deck, path)
+            answers[f"{ending} {name}"] = tried(read_deck, path, "MPa")
+        answers[f"{ending} without unit"] = tried(read_deck, path)
         path.write_text(text, encoding="utf-8")
-        answers[f"{ending} without unit"] = _tried(read_deck, path)
-        answers[f"{ending} of seconds"] = _tried(read_deck, path, "s")
+        answers[f"{ending} without unit"] = tried(read_deck, path)
+        answers[f"{ending} of seconds"] = tried(read_deck, path, "s")
         assert is_deck(path)
     for name, (old, new) in TOMLS.items():
         path = Path("rubber.toml")
         path.write_text(TOML.replace(old, new), encoding="utf-8")
-        answers[f"toml {name}"] = (_tried(read_rubber, path), _tried(read_prony, path))
+        answers[f"toml {name}"] = (tried(read_rubber, path), tried(read_prony, path))
     for form in MOST_TERMS:
         answers[f"{form} text"] = deck_text(SERIES, form).splitlines()
         answers[f"{form} of few"] = deck_text(
@@ -615,16 +608,16 @@ def test_decks(tmp_path, monkeypatch, file_regression):
             name="SOLE",
         ).splitlines()
         many = RelaxationSpectrum(1e6, np.ones(19) * 1e5, np.geomspace(1e-6, 1, 19))
-        answers[f"{form} of many"] = _tried(lambda: len(deck_text(many, form)))  # noqa: B023
+        answers[f"{form} of many"] = tried(lambda: len(deck_text(many, form)))  # noqa: B023
     loose = replace(SERIES, equilibrium_modulus=0.0)
-    answers["at rest"] = [_tried(deck_text, loose, form) for form in ("FEBio", "LS-DYNA")]
-    answers["form"] = _tried(deck_text, SERIES, "Marc")
-    answers["ratios"] = [_tried(deck_text, SERIES, "FEBio", poisson_ratio=r) for r in (0.0, 0.5)]
+    answers["at rest"] = [tried(deck_text, loose, form) for form in ("FEBio", "LS-DYNA")]
+    answers["form"] = tried(deck_text, SERIES, "Marc")
+    answers["ratios"] = [tried(deck_text, SERIES, "FEBio", poisson_ratio=r) for r in (0.0, 0.5)]
     write_deck(Path("made.INP"), SERIES)
     back = read_deck(Path("made.INP"), "MPa")
     assert young_from_shear(back.series, 0.49).instantaneous_modulus == pytest.approx(6.5e6)
-    answers["there"] = _tried(write_deck, Path("made.INP"), SERIES)
-    answers["ending"] = _tried(write_deck, Path("made.txt"), SERIES)
+    answers["there"] = tried(write_deck, Path("made.INP"), SERIES)
+    answers["ending"] = tried(write_deck, Path("made.txt"), SERIES)
     held(file_regression, answers)
     assert not is_deck(Path("a.csv"))
     assert math.isclose(back.series.relaxation_times[0], 1e-3)

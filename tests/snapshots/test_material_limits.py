@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from snapshot import held, refusal
+from snapshot import held, refusal, tried
 from underfoot.core import InputError
 from underfoot.material.curves import DynamicSweep, RelaxationCurve, checked_curve, minimum_on
 from underfoot.material.elastomer import Elastomer, bulk_modulus, shear_modulus
@@ -26,14 +26,6 @@ from underfoot.material.read import read_rubber
 from underfoot.material.spectrum import RelaxationSpectrum
 from underfoot.material.spectrum_fit import fit_dynamic, fit_relaxation, reduce_spectrum
 from underfoot.material.tables import FileColumn, FileTable, heading_of, quantity_of, read_tables
-
-
-def tried(call, *args, **options):
-    try:
-        return call(*args, **options)
-    except Exception as error:  # how it is refused is what is held
-        return f"{type(error).__name__}: {error}"
-
 
 # numbers that are none
 

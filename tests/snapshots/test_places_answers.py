@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from snapshot import held, refusal
+from snapshot import held, refusal, tried
 from underfoot.case import Case
 from underfoot.compute.resolve import resolve_context
 from underfoot.core import SourcedValue
@@ -20,13 +20,6 @@ from underfoot.places.place import place_of, read_place
 UM = 1e-6
 RQ = (1e-6, 4e-6)
 COUNT = 400
-
-
-def _tried(call, *args, **options):
-    try:
-        return call(*args, **options)
-    except Exception as error:  # which one is held
-        return f"{type(error).__name__}: {error}"
 
 
 def _draws():
@@ -63,7 +56,7 @@ def test_machines(file_regression):
             ],
             "told": [device.title, device.standard, device.reproducibility],
             "classes": [f"{limit:.2f} {device.class_of(limit)}" for limit in limits],
-            "checked": [_tried(device.checked, value, "x") for value in (*values, True, "3")],
+            "checked": [tried(device.checked, value, "x") for value in (*values, True, "3")],
             "read": [
                 np.quantile(device.read(_draws(), "hall", RQ, each), (0.1, 0.5, 0.9)).tolist()
                 for each in (fluid, machines.FLUIDS["dry"])
@@ -220,7 +213,7 @@ def test_floors_read(file_regression):
         refusal(calibration.calibrated_floor, plain, "pendulum-96", 0.4),
         refusal(calibration.calibrated_floor, constant, "pendulum-96", 36.0),
         refusal(calibration.machine_reading, plain, method="pendulum_96", keep=["speed"]),
-        *(_tried(_case, friction={"model": "pair_read", **each}) for each in (
+        *(tried(_case, friction={"model": "pair_read", **each}) for each in (
             {}, {"ptv_96": 1}, {"ptv_55": 151}, {"barefoot_class": "D"}, {"dcof": 1.3})),
     ]  # fmt: skip
     held(file_regression, answers)

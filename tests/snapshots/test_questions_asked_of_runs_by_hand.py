@@ -110,6 +110,7 @@ def test_slips_of_a_population(file_regression):
         "none heard": population(study(subjects=quiet)),
         "dry": population(study(setting=dry, fit=None, full=True)),
         "still": population(study(**still), SourcedValue(None, reason="no model")),
+        "slow": population(study(peak_speed_at=lambda **by: 0.006)),
         "unknown": population(study(peak_speed_at=lambda **by: None, pressure_error=None,
                                     rows=lambda: np.array([np.nan, 1.0]),
                                     highest_seen=lambda: 0.9)),

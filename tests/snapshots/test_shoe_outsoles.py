@@ -8,7 +8,7 @@ import pytest
 
 import sole_forms as made
 from outsole_bodies import flat, grooved, heel_body, sole_body, triangles, turned
-from snapshot import held, refusal
+from snapshot import held, refusal, tried
 from underfoot.shoe.files import cleaning, orientation
 from underfoot.shoe.files.bodies import found_outsole
 from underfoot.shoe.files.carriers import group_bodies, span_mask
@@ -128,10 +128,7 @@ LENGTHS = (
 def test_units(file_regression):
     answers = {}
     for length, width in LENGTHS:
-        try:
-            answers[f"{length} x {width}"] = length_unit(length, width, where="a.stl")
-        except Exception as error:  # which one is held
-            answers[f"{length} x {width}"] = f"{type(error).__name__}: {error}"
+        answers[f"{length} x {width}"] = tried(length_unit, length, width, where="a.stl")
     answers["likely"] = [likely_unit(length, width) for length, width in LENGTHS]
     for name, given in {
         "chosen": {"chosen": "cm"}, "stated": {"in_file": 1e-2},
@@ -140,10 +137,7 @@ def test_units(file_regression):
         "of a scene": {"in_file": 0.05, "longest": 2.0}, "just": {"in_file": 0.5 / 28},
         "just short": {"in_file": 0.02 / 28},
     }.items():  # fmt: skip
-        try:
-            answers[name] = length_unit(28, 10, where="a.stl", **given)
-        except Exception as error:
-            answers[name] = f"{type(error).__name__}: {error}"
+        answers[name] = tried(length_unit, 28, 10, where="a.stl", **given)
     held(file_regression, answers)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import sole_forms as made
-from snapshot import held, refusal
+from snapshot import held, refusal, tried
 from underfoot.shoe.files.gltf import read_gltf, strip_faces
 from underfoot.shoe.files.mesh import FileBody, MeshFile, Unmet, assemble_mesh
 from underfoot.shoe.files.ply import read_ply
@@ -478,10 +478,7 @@ def test_polygons(file_regression):
             "OBJ",
             "a.obj",
         )
-        try:
-            answers[name] = triangulate_polygons(*given)
-        except Exception as error:  # which one is held
-            answers[name] = f"{type(error).__name__}: {error}"
+        answers[name] = tried(triangulate_polygons, *given)
     held(file_regression, answers)
 
 
@@ -507,10 +504,7 @@ def test_bodies_of_a_file(file_regression):
     unmet = (Unmet("colours", False), Unmet("curves", False, "Mesh it"))
     answers = {}
     for name, bodies in files.items():
-        try:
-            answers[name] = assemble_mesh(MeshFile("OBJ", bodies, 1e-3, unmet[:1]), "a.obj")
-        except Exception as error:  # which one is held
-            answers[name] = f"{type(error).__name__}: {error}"
+        answers[name] = tried(assemble_mesh, MeshFile("OBJ", bodies, 1e-3, unmet[:1]), "a.obj")
     needs = (Unmet("curves", True, "Mesh it"), Unmet("nurbs", True), *unmet)
     answers["needs"] = refusal(assemble_mesh, MeshFile("OBJ", [_body()], None, needs), "a.obj")
     held(file_regression, answers)

@@ -3,14 +3,13 @@
 import io
 import json
 import math
-import warnings
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from snapshot import held, refusal
+from snapshot import held, refusal, tried
 from underfoot.surface import (
     arrays,
     filter,
@@ -496,11 +495,11 @@ def test_texts(tmp_path, monkeypatch, file_regression):
     for name, content in TEXTS.items():
         path = tmp_path / "made.csv"
         path.write_text(content, encoding="utf-8")
-        answers[name] = {"numbers": _tried(read_numbers, path)}
+        answers[name] = {"numbers": tried(read_numbers, path)}
         for way, options in WAYS.items():
             if way == "filled" and name not in ("missing", "codes", "a point less"):
                 continue
-            answers[name][way] = _tried(read_surface, path, **options)
+            answers[name][way] = tried(read_surface, path, **options)
     path.write_text(TEXTS["plain"], encoding="utf-8")
     for name, options in {
         "unit": {"length_unit": "furlong"},
@@ -509,23 +508,14 @@ def test_texts(tmp_path, monkeypatch, file_regression):
         "resampled": {"resample": True},
         "tip": {"tip_radius": 2e-6},
     }.items():
-        answers[f"plain, {name}"] = _tried(read_profile, path, **options)
+        answers[f"plain, {name}"] = tried(read_profile, path, **options)
     path.write_text(TEXTS["uneven"], encoding="utf-8")
-    answers["uneven resampled"] = _tried(read_profile, path, resample=True)
+    answers["uneven resampled"] = tried(read_profile, path, resample=True)
     path.write_text(TEXTS["map"], encoding="utf-8")
-    answers["map as profile"] = _tried(read_profile, path)
+    answers["map as profile"] = tried(read_profile, path)
     path.write_text(TEXTS["plain"], encoding="utf-8")
-    answers["profile as map"] = _tried(read_map, path)
+    answers["profile as map"] = tried(read_map, path)
     held(file_regression, answers)
-
-
-def _tried(call, *args, **options):
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            return call(*args, **options)
-    except Exception as error:  # which one is held
-        return f"{type(error).__name__}: {error}"
 
 
 DEKTAK = (
@@ -550,7 +540,7 @@ def test_other_files(tmp_path, monkeypatch, file_regression):
         "no results": ("Function", "F"),
     }.items():
         path.write_bytes(DEKTAK.replace(old, new, 1).encode("latin-1"))
-        answers[name] = _tried(read_dektak, path)
+        answers[name] = tried(read_dektak, path)
     assert reading.is_dektak(path)
     z = GROUND.heights[:9, :7] * 1e6
     stream = io.BytesIO()
@@ -575,10 +565,10 @@ def test_other_files(tmp_path, monkeypatch, file_regression):
         file.write_bytes(data)
         answers[f"array {name}"] = {
             "is": is_array(file),
-            "bare": _tried(read_array, file),
-            "unit": _tried(read_array, file, height_unit="um"),
-            "both": _tried(read_array, file, height_unit="um", length_unit="m"),
-            "all": _tried(read_surface, file, height_unit="um", spacing=1e-6),
+            "bare": tried(read_array, file),
+            "unit": tried(read_array, file, height_unit="um"),
+            "both": tried(read_array, file, height_unit="um", length_unit="m"),
+            "all": tried(read_surface, file, height_unit="um", spacing=1e-6),
         }
     head = (
         b"Gwyddion Simple Field 1.0\nXRes = 5\nYRes = 4\nXReal = 5e-5\nYReal = 8e-5\n"
@@ -600,11 +590,11 @@ def test_other_files(tmp_path, monkeypatch, file_regression):
         file = tmp_path / "made.gsf"
         file.write_bytes(data + (field[:20] if name == "one row" else field))
         answers[f"GSF {name}"] = (
-            _tried(read_instrument, file),
-            _tried(read_instrument, file, height_unit="nm"),
+            tried(read_instrument, file),
+            tried(read_instrument, file, height_unit="nm"),
         )
     file.write_bytes(data + field[:-4])
-    answers["GSF cut"] = _tried(read_instrument, file)
+    answers["GSF cut"] = tried(read_instrument, file)
     for name, data in {
         "a.pdf": b"%PDF-1.4 \0",
         "a.png": b"\x89PNG\0",
@@ -612,11 +602,11 @@ def test_other_files(tmp_path, monkeypatch, file_regression):
         "a.zip": b"PK\3\4 \0",
     }.items():
         (tmp_path / f"made{name}").write_bytes(data)
-        answers[name] = _tried(read_instrument, tmp_path / f"made{name}")
+        answers[name] = tried(read_instrument, tmp_path / f"made{name}")
     (tmp_path / "made.sdf").write_bytes(b"bISO-1.0\0")
-    answers["SDF damaged"] = _tried(read_instrument, tmp_path / "made.sdf")
-    answers["unit of SDF"] = _tried(read_instrument, tmp_path / "made.sdf", height_unit="um")
-    answers["spacing of SDF"] = _tried(read_surface, tmp_path / "made.sdf", spacing=1e-6)
+    answers["SDF damaged"] = tried(read_instrument, tmp_path / "made.sdf")
+    answers["unit of SDF"] = tried(read_instrument, tmp_path / "made.sdf", height_unit="um")
+    answers["spacing of SDF"] = tried(read_surface, tmp_path / "made.sdf", spacing=1e-6)
     assert is_instrument(tmp_path / "made.sdf")
     assert not is_text(tmp_path / "made.sdf")
     assert is_text(path)
@@ -626,7 +616,7 @@ def test_other_files(tmp_path, monkeypatch, file_regression):
             write_surface(surface, written)
             answers[f"{ending} {name}"] = read_surface(written)
     answers["ending"] = refusal(write_surface, PROFILE, tmp_path / "heights.csv")
-    answers["not there"] = _tried(read_surface, tmp_path / "floor.csv")
+    answers["not there"] = tried(read_surface, tmp_path / "floor.csv")
     answers["units"] = [
         length_factor(unit, "w")
         for unit in ("um", "µm", "Microns", "mm", "inch", "Mils", "Å", "nm ", "m")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from test_trials_machines import PINS, SLIDES, numbers, pin, short, slid
 
-from snapshot import held
+from snapshot import held, tried
 from underfoot.core import UnderfootError
 from underfoot.trials.machines.pin_on_disk import (
     correlated_error,
@@ -31,13 +31,6 @@ from underfoot.trials.recording.signals import (
     velocity,
 )
 from underfoot.trials.recording.trial import Channel, Trial
-
-
-def tried(call, *args, **options):
-    try:
-        return call(*args, **options)
-    except Exception as error:  # how it is refused is what is held
-        return f"{type(error).__name__}: {error}"
 
 
 def block_of(force, travel, rate):

@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 from scipy.stats import rankdata
 
-from snapshot import held
+from snapshot import held, tried
 from underfoot.trials.statistics.agreement import FORMS, bland_altman, intraclass_correlation
 from underfoot.trials.statistics.curves import paired_curve_test
 from underfoot.trials.statistics.effects import effect_size, equivalence, power
@@ -41,15 +41,6 @@ from underfoot.trials.statistics.samples import (
     t_test,
 )
 from underfoot.trials.statistics.shares import paired_score, score, share_difference
-
-
-def tried(call, *args, **options):
-    """Return an answer, or the refusal of a sample that has none."""
-    try:
-        return call(*args, **options)
-    except Exception as error:  # how it is refused is held as well
-        return f"{type(error).__name__}: {error}"
-
 
 # by exact counts
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import trial_studies as made
-from snapshot import held, refusal
+from snapshot import held, refusal, tried
 from underfoot.trials.readers.profile import TrialsProfile
 from underfoot.trials.recording import protocols
 from underfoot.trials.recording.axes import axes_of
@@ -64,14 +64,6 @@ def written(folder, files):
     return folder
 
 
-def or_refusal(call, *args, **options):
-    """What a call answers, or why it answers nothing."""
-    try:
-        return call(*args, **options)
-    except Exception as error:  # which one is held
-        return f"{type(error).__name__}: {error}"
-
-
 TABLES = {
     "plain": "file,shoe,mass (kg),speed (m/s)\na.csv,x,70,1.2\nb.csv,y,80.5,\n",
     "german": "Datei;Schuh;Körpergröße (cm);Gewicht (kg);Datum\na.csv;x;170,5;70,1;5.3.2026\n"
@@ -105,7 +97,7 @@ def test_tables_of_conditions(file_regression, tmp_path):
     for name, text in TABLES.items():
         path = tmp_path / "conditions.csv"
         path.write_text(text, encoding="utf-8")
-        found[name] = or_refusal(noted.conditions_of, tmp_path)
+        found[name] = tried(noted.conditions_of, tmp_path)
     path.unlink()
     labels = ["a/one.c3d", "b/one.c3d", "two.csv", "a/three.trc"]
     held(
@@ -117,7 +109,7 @@ def test_tables_of_conditions(file_regression, tmp_path):
                 str(tmp_path), "PLACE"
             ),
             "named": {
-                name: or_refusal(noted.named_file, name, labels, below)
+                name: tried(noted.named_file, name, labels, below)
                 for name, below in (
                     ("a/one.c3d", "."),
                     ("one.c3d", "a"),
@@ -209,7 +201,7 @@ def test_folders(file_regression, tmp_path):
     def told(name):
         files, options = FOLDERS[name]
         folder = written(tmp_path / name, files)
-        found = or_refusal(noted.study_folder, folder, **options)
+        found = tried(noted.study_folder, folder, **options)
         if isinstance(found, str):
             return found.replace(str(tmp_path), "PLACE")
         return {
@@ -361,9 +353,7 @@ def test_sheets_of_readings(file_regression, tmp_path, part):
         way, text = SHEETS[name]
         path = tmp_path / "sheet.csv"
         path.write_text(text, encoding="utf-8")
-        results = or_refusal(
-            reading_results, "sheet.csv", path, "sum", {"who": "me"}, protocol(way)
-        )
+        results = tried(reading_results, "sheet.csv", path, "sum", {"who": "me"}, protocol(way))
         if isinstance(results, str):
             found[name] = results
             continue

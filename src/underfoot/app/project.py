@@ -25,7 +25,7 @@ from typing import Any
 
 from underfoot.case import Case
 from underfoot.core import InputError
-from underfoot.core.errors import UnderfootError
+from underfoot.core.errors import UnderfootError, first_names
 from underfoot.core.files import whole_file
 from underfoot.core.remark import Message
 
@@ -322,7 +322,7 @@ class Project:
     def _present(self, name: str) -> Path:
         path = self.path(name)
         if not path.is_file():
-            known = ", ".join(self.variants()[:12]) or "none yet"
+            known = first_names(self.variants()) or "none yet"
             what = Message('there is no variant "{name}"', name=name)
             raise InputError(what, where="variant", allowed=known)
         return path

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core import DataError, InputError, nearest_match
+from underfoot.core.errors import first_names
 from underfoot.core.remark import Message, Remark
 
 Array = NDArray[np.float64]
@@ -124,7 +125,7 @@ def _rows(conditions: Mapping[str, NDArray], name: str, value: str) -> NDArray[n
         raise InputError(
             Message('no trial has {name} = "{value}"', name=name, value=value),
             where="--where",
-            allowed=", ".join(known[:12]),
+            allowed=first_names(known),
             nearest=nearest_match(value, known),
         )
     return found

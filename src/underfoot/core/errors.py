@@ -172,19 +172,23 @@ def nearest_match(given: str, known: Iterable[str], *, least: float = 0.5) -> st
     return folded[matches[0]] if matches else None
 
 
+def first_names(names: Iterable[str], most: int = 12) -> Message:
+    """Return the first of some names, and how many more there are; empty where there are none."""
+    every = list(names)
+    if (more := len(every) - most) > 0:
+        return Message("{names} and {more} more", names=every[:most], more=more)
+    return Message("{names}", names=every)
+
+
 def unknown_name(
     kind: str, given: str, known: Iterable[str], *, where: str | None = None
 ) -> InputError:
     """Return the error for a name that is not in a list, with the list and the nearest match."""
     names = sorted(known)
-    more = len(names) - 12
-    shown = Message("{names}", names=names)
-    if more > 0:
-        shown = Message("{names} and {more} more", names=names[:12], more=more)
     return InputError(
         Message('unknown {kind} "{given}"', kind=kind, given=given),
         where=where,
-        allowed=shown or "none defined",
+        allowed=first_names(names) or "none defined",
         nearest=nearest_match(given, names),
     )
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
-from .errors import InputError, missing_file
+from .errors import InputError, first_names, missing_file
 from .remark import Message
 from .typed import float_of_text
 
@@ -123,10 +123,7 @@ def check_writable_folder(path: Path, *, overwrite: bool = False) -> None:
             remedy="Choose another folder, or add --overwrite to replace it as a whole",
         )
     if path.is_dir() and any(path.iterdir()) and not any((path / mark).exists() for mark in _OWN):
-        names = sorted(entry.name for entry in path.iterdir())
-        held = Message("{names}", names=names[:3])
-        if len(names) > 3:
-            held = Message("{names} and more", names=names[:3])
+        held = first_names(sorted(entry.name for entry in path.iterdir()), most=3)
         raise InputError(
             Message(
                 "the folder {path} was not made by underfoot and holds {held}", path=path, held=held

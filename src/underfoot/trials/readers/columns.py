@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from underfoot.core import DataError, nearest_match
+from underfoot.core.errors import first_names
 from underfoot.core.remark import Message
 
 from ..recording.plates import refused_plate
@@ -188,7 +189,7 @@ def _column(sheet: Sheet, name: str) -> np.ndarray:
         raise DataError(
             Message('there is no column "{name}" of numbers', name=name),
             where=sheet.name,
-            allowed=", ".join(list(sheet.numbers)[:12]),
+            allowed=first_names(sheet.numbers),
             nearest=nearest_match(name, sheet.numbers),
             remedy="Correct the name in the profile",
         )

@@ -11,6 +11,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from underfoot.core import DataError, InputError, nearest_match, unknown_name
+from underfoot.core.errors import first_names
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.remark import Message
 
@@ -365,13 +366,10 @@ def _find_name(kind: str, names: tuple[str, ...], known: Mapping[str, _T], where
         if _fold_name(name) in folded:
             return folded[_fold_name(name)]
     listed = list(known)
-    shown = Message("{names}", names=listed)
-    if (more := len(listed) - 12) > 0:
-        shown = Message("{names} and {more} more", names=listed[:12], more=more)
     raise DataError(
         Message("no {kind} named {names}", kind=kind, names=" or ".join(names)),
         where=where,
-        allowed=shown or Message("the trial has no {kind}s", kind=kind),
+        allowed=first_names(listed) or Message("the trial has no {kind}s", kind=kind),
         nearest=nearest_match(names[0], listed) if names else None,
         remedy="Name the columns in a profile file",
     )

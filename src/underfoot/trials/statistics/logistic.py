@@ -486,9 +486,7 @@ def _estimate_equations(
         family = models.families.Binomial()
         model = models.GEE(y, matrix, groups, family=family, cov_struct=structure)
         with np.errstate(all="ignore"), python_warnings.catch_warnings():
-            python_warnings.simplefilter(
-                "ignore"
-            )  # of a fit that does not settle, which is asked below
+            python_warnings.simplefilter("ignore")  # whether the fit has settled is asked below
             fit: Any = model.fit(maxiter=200, ctol=1e-12, start_params=start, first_dep_update=0)
         alike = float(np.asarray(structure.dep_params or 0.0))
         # Of persons who always do the same the moments give 1 and more: no correlation matrix.

@@ -1,7 +1,6 @@
 """What is in a measurement file and what was made of it, for people to check before they trust."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -9,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import InputError, unknown_name
+from underfoot.core.errors import first_names
 from underfoot.core.remark import Message
 
 from ..readers import TrialsProfile, read_profile, read_trials
@@ -111,7 +111,7 @@ class Description:
             "",
             Message("Markers: {count} at {rate:g} Hz", count=len(markers), rate=first.rate),
         ]
-        lines.append("  " + _some(list(markers)))
+        lines.append("  " + first_names(markers, _SHOWN))
         for side, names in self.heels.items():
             for name in names:
                 lost = 100.0 * float(markers[name].missing.mean()) if name in markers else 0.0
@@ -134,7 +134,7 @@ class Description:
             ),
         ]
         shown = [f"{name} ({channel.unit or 'unit?'})" for name, channel in channels.items()]
-        return [*lines, "  " + _some(shown, 2 * _SHOWN)]
+        return [*lines, "  " + first_names(shown, 2 * _SHOWN)]
 
     def _stances(self) -> list[str]:
         if not any(plate.usable for plate in self.trial.plates):
@@ -264,13 +264,6 @@ def _baseline(plate: Plate) -> str:
 def _edit_words(edit: Edit) -> str:
     value = f"{edit.value:g} s" if isinstance(edit.value, float) else edit.value or ""
     return f"{edit.step_words}: {f'{edit.what} {value}'.rstrip()} ({edit.why})"
-
-
-def _some(names: Sequence[str], most: int = _SHOWN) -> Message:
-    more = len(names) - most
-    if more <= 0:
-        return Message("{names}", names=names)
-    return Message("{names} and {more} more", names=names[:most], more=more)
 
 
 def _parts(thing: object, names: str) -> dict[str, Any]:
