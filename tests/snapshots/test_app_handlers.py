@@ -92,16 +92,23 @@ def test_an_answer_is_changed_and_kept(file_regression, monkeypatch, session):
     held(file_regression, told)
 
 
-def test_what_would_help_is_asked_for_where_it_was_not(monkeypatch, session):
-    computed(session, "a")
+def asking_for_help(monkeypatch, session):
+    """Return the page of an answer, and what builds its part that says what would help."""
     monkeypatch.setattr(Project, "is_current", lambda self, name: True)
     page = answer._Answer(session, "a", session.project.case("a"))
-    done: list[Any] = []
 
     def build():
         page.help = ui.element("div")
         page.helped = ui.timer(1.0, lambda: None, active=False)
         page._helps()
+
+    return page, build
+
+
+def test_what_would_help_is_asked_for_where_it_was_not(monkeypatch, session):
+    computed(session, "a")
+    page, build = asking_for_help(monkeypatch, session)
+    done: list[Any] = []
 
     async def act(places):
         label = session.text("answer.help_begin")
@@ -173,16 +180,10 @@ def test_wear_of_what_was_measured_is_computed(file_regression, monkeypatch, ses
 def test_help_waits_for_what_runs(monkeypatch, session, state):
     """A button is shown where help isn't there, isn't computed, and was not computed."""
     computed(session, "a")
-    monkeypatch.setattr(Project, "is_current", lambda self, name: True)
-    page = answer._Answer(session, "a", session.project.case("a"))
+    build = asking_for_help(monkeypatch, session)[1]
     task = session.submit("t", answer.ADVICE, about="a")
     task.state = state
     shown: list[Any] = []
-
-    def build():
-        page.help = ui.element("div")
-        page.helped = ui.timer(1.0, lambda: None, active=False)
-        page._helps()
 
     async def act(places):
         shown.extend(one.text for one in places["page"].descendants() if isinstance(one, ui.button))
