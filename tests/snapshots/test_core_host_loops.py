@@ -218,7 +218,7 @@ def test_folders_that_can_not_be_made_say_why(tmp_path, monkeypatch):
             (full / name).touch()
         text = refusal(check_writable_folder, full, overwrite=True)
         assert "holds a, b, c" in text
-        assert ("and more" in text) == more
+        assert ("and 1 more" in text) == more
 
 
 def test_what_went_wrong_with_a_file_is_told_with_its_name():
