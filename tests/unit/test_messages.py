@@ -35,6 +35,9 @@ OWN = ("core/remark.py", "trials/recording/measurement.py")
 """Where makers are made."""
 LETTERS = re.compile("[A-Za-z]{2}")
 FIELDS = re.compile(r"\{\w+[^}]*\}")
+SCRIPTS = SOURCE / "report" / "templates"
+IN_SCRIPT = re.compile(r'"([^"$\n]*\{\w+\}[^"$\n]*)"')
+"""Templates of messages that a script of a page makes."""
 
 
 def fields(code):
@@ -122,6 +125,9 @@ def codes():
                 for code in call.args[CODE_AT.get(call.func.id, len(call.args)) :][:1]:
                     if isinstance(code, ast.Constant):
                         found.setdefault(code.value, f"{place}:{call.lineno}")
+    for script in SCRIPTS.glob("*.js"):
+        said = IN_SCRIPT.findall(script.read_text("utf-8"))
+        found.update(dict.fromkeys(said, script.name))
     return found
 
 

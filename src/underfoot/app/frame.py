@@ -21,6 +21,7 @@ HEAD = """
 <link rel="stylesheet" href="/static/app.css">
 <script src="/static/theme.js"></script>
 <script src="/static/language.js"></script>
+<script defer src="/viewer/sentences.js"></script>
 <script defer src="/viewer/viewer_data.js"></script>
 <script defer src="/viewer/viewer_draw.js"></script>
 <script defer src="/viewer/viewer_page.js"></script>

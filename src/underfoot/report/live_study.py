@@ -310,7 +310,8 @@ def live_page(study: Study) -> str:
     sections = live_sections(live)
     so_far = PageSection("So far", html=head, table=live.cost_table(), first=True)
     parts = [so_far, *sections, PageSection("Stop, widen", html=steps)]
-    script = template("live_study.js").render() + template("design_study.js").render()
+    names = ("sentences.js", "live_study.js", "design_study.js")
+    script = "".join(template(name).render() for name in names)
     return page(live, parts, script=script)
 
 

@@ -25,7 +25,7 @@ from .drawn_sole import DrawnSole, drawn_sole
 from .quantities import DrawnQuantity, carried_load, drawn_values, quantities, scale
 from .surface_mesh import SurfaceMesh, surface_mesh
 
-SCRIPTS = ("viewer_data.js", "viewer_draw.js", "viewer_page.js")
+SCRIPTS = ("sentences.js", "viewer_data.js", "viewer_draw.js", "viewer_page.js")
 _DIFFERENCES = "RdBu_r"
 _MOST_HISTORY_CELLS = 1_500_000
 """Cells of all instants of one history; more is thinned in time so that a page stays small."""

@@ -32,7 +32,7 @@ function startStudy(root) {
     const design = designs[number];
     find("chosen").hidden = false;
     root.dataset.chosen = design.number;
-    find("title").textContent = `Design ${design.number}${design.front ? ", on the front" : ""}`;
+    say(find("title"), design.front ? "Design {number}, on the front" : "Design {number}", { number: String(design.number) });
     const row = (tag, texts) => {
       const made = document.createElement("tr");
       made.append(...texts.map((text) => { const cell = document.createElement(tag); cell.textContent = text; return cell; }));
@@ -46,7 +46,7 @@ function startStudy(root) {
     place.replaceChildren(...(stored ? [stored.content.cloneNode(true)] : []));
     root.dispatchEvent(new CustomEvent("chosen", { detail: design.number, bubbles: true }));
     const viewer = place.querySelector(".viewer");
-    if (viewer) await startViewer(viewer).catch((problem) => { viewer.querySelector('[data-part="loading"]').textContent = `No 3-D picture (${problem.message}).`; });
+    if (viewer) await startViewer(viewer).catch((problem) => { say(viewer.querySelector('[data-part="loading"]'), "No 3-D picture ({problem}).", { problem: problem.message }); });
   }
 
   function scatter() {
@@ -62,7 +62,8 @@ function startStudy(root) {
       const at = [x.place(d.values[across]), y.place(d.values[up])];
       if (at.includes(null)) return;
       const dot = element("circle", { cx: at[0], cy: at[1], r: d.front ? 6 : 4, class: kind(d), "data-design": k, "data-number": d.number, tabindex: 0, role: "button", "aria-label": `Design ${d.number}` });
-      dot.append(element("title", {}, `Design ${d.number}; ${label(across)} = ${short(d.values[across])}; ${label(up)} = ${short(d.values[up])}`));
+      dot.append(say(element("title", {}), "Design {number}; {across} = {across_value}; {up} = {up_value}", { number: String(d.number),
+        across: label(across), across_value: short(d.values[across]), up: label(up), up_value: short(d.values[up]) }));
       dot.addEventListener("click", () => choose(k));
       dot.addEventListener("keydown", (e) => { if (e.key === "Enter" || e.key === " ") { e.preventDefault(); choose(k); } });
       shapes.push(dot);

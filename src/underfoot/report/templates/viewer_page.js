@@ -2,6 +2,8 @@
 
 const LETTERS = "ABCDEFGHIJKL";
 
+function inMillimetres([x, y]) { return { x: (x * 1e3).toFixed(1), y: (y * 1e3).toFixed(1) }; }
+
 // Turn the stored arrays of a pane into numbers.
 async function unpackPane(pane) {
   const count = pane.nx * pane.ny;
@@ -133,7 +135,8 @@ async function startViewer(root) {
     const sizes = made.flatMap((values) => [...values].filter((v) => v === v).map((v) => Math.abs(q.log ? Math.log(v) : v))).sort((a, b) => a - b);
     const most = sizes[sizes.length - 1] || 0, usual = sizes[Math.floor(0.995 * (sizes.length - 1))] || 0;
     const reach = Math.max(usual || most, q.log ? 0.05 : 1e-12 * q.high), end = q.log ? Math.exp(reach) : reach;
-    const title = `${q.title}: ${q.log ? "times that of A" : "more than A (red) or less (blue)"}`;
+    const of = { quantity: q.title };
+    const title = q.log ? sentenceOf("{quantity}: times that of A", of) : sentenceOf("{quantity}: more than A (red) or less (blue)", of);
     return [made, { ...q, title, unit: q.log ? "" : q.unit, colours: "RdBu_r", low: q.log ? 1 / end : -end, high: end,
       peak: q.log ? Math.exp(most) : most, cut: most > 1.001 * reach, loads: [], meaning: "" }];
   }
@@ -171,13 +174,17 @@ async function startViewer(root) {
     }));
     const none = drawings.some(({ values, pane }) => values.some((v, k) => Number.isNaN(v) && !Number.isNaN(pane.height[k])));
     const unit = q.unit ? ` ${q.unit}` : "", letter = (k) => (q.loads.length > 1 ? `${LETTERS[k]} ` : "");
-    find("bar-note").textContent = [
-      q.meaning && !early(q) && `${q.meaning[0].toUpperCase()}${q.meaning.slice(1)}, ${q.loads.map((load, k) => letter(k) + load).join(", ")} in all.`,
-      none && (state.difference ? "Plain rubber: none in either." : "Plain rubber: none."),
-      scene.panes.some((pane) => pane.computed) && "Faint: outside the part that was computed.",
-      q.cut && `A few cells are above the scale, up to ${shortNumber(q.peak)}${unit}.`,
-    ].filter(Boolean).join(" ");
-    drawings.forEach((d) => d.canvas.setAttribute("aria-label", `Sole of ${d.pane.name} from below, coloured by ${q.title}. Arrow keys turn it, Enter shows the values at its centre.`));
+    const told = (code, values) => say(document.createElement("span"), code, values);
+    const loads = q.loads.map((load, k) => letter(k) + load).join(", ");
+    const notes = [
+      q.meaning && !early(q) && told("{meaning}, {loads} in all.", { meaning: q.meaning[0].toUpperCase() + q.meaning.slice(1), loads }),
+      none && told(state.difference ? "Plain rubber: none in either." : "Plain rubber: none."),
+      scene.panes.some((pane) => pane.computed) && told("Faint: outside the part that was computed."),
+      q.cut && told("A few cells are above the scale, up to {peak}.", { peak: shortNumber(q.peak) + unit }),
+    ].filter(Boolean);
+    find("bar-note").replaceChildren(...notes.flatMap((note, k) => (k ? [" ", note] : [note])));
+    drawings.forEach(({ canvas, pane }) => canvas.setAttribute("aria-label",
+      sentenceOf("Sole of {sole} from below, coloured by {quantity}. Arrow keys turn it, Enter shows the values at its centre.", { sole: pane.name, quantity: q.title })));
   }
 
   function timeline(q) {
@@ -195,7 +202,7 @@ async function startViewer(root) {
     if (state.cell < 0) { box.hidden = true; return; }
     box.hidden = false;
     const pane = scene.panes[state.pane], { ny, spacing, x0, y0 } = pane;
-    const x = (x0 + Math.floor(state.cell / ny) * spacing) * 1e3, y = (y0 + (state.cell % ny) * spacing) * 1e3;
+    const at = inMillimetres([x0 + Math.floor(state.cell / ny) * spacing, y0 + (state.cell % ny) * spacing]);
     const row = (tag, cells) => {
       const made = document.createElement("tr");
       cells.forEach((text, k) => {
@@ -219,8 +226,9 @@ async function startViewer(root) {
         return p + f > 0 ? `${shortNumber(100 * f / (p + f))} %` : "no load";
       })]));
     }
-    const then = early(state.quantity), also = then && `; ${state.quantity.title} after ${then}, the rest at the end`;
-    find("values-place").textContent = `At x ${x.toFixed(1)} mm, y ${y.toFixed(1)} mm${also}`;
+    const time = early(state.quantity), place = find("values-place");
+    if (time) say(place, "At x {x} mm, y {y} mm; {quantity} after {time}, the rest at the end", { ...at, quantity: state.quantity.title, time });
+    else say(place, "At x {x} mm, y {y} mm", at);
     find("values-table").replaceChildren(...rows);
   }
 
@@ -346,7 +354,7 @@ async function startViewer(root) {
 
   // Places that are kept: their values of what is shown, at the instant shown.
   function probes() {
-    const cell = (tag, text) => Object.assign(document.createElement(tag), { textContent: text });
+    const cell = (tag, text = "") => Object.assign(document.createElement(tag), { textContent: text });
     find("probes").hidden = !state.probes.length;
     find("probes-head").replaceChildren(...["", "Place", ...scene.panes.map((_, k) => (scene.panes.length > 1 ? `${LETTERS[k]}: ` : "") + state.quantity.title), ""].map((text) => cell("th", text)));
     find("probes-rows").replaceChildren(...state.probes.map((place, n) => {
@@ -354,7 +362,7 @@ async function startViewer(root) {
       away.type = "button";
       away.addEventListener("click", () => { state.probes.splice(n, 1); probes(); redraw(); });
       last.append(away);
-      row.append(cell("th", String(n + 1)), cell("td", `At x ${(place[0] * 1e3).toFixed(1)} mm, y ${(place[1] * 1e3).toFixed(1)} mm`),
+      row.append(cell("th", String(n + 1)), say(cell("td"), "At x {x} mm, y {y} mm", inMillimetres(place)),
         ...drawings.map((d) => cell("td", valueText(d.pane, cellOf(d.pane, place), d.own, state.quantity))), last);
       return row;
     }));
@@ -374,7 +382,7 @@ async function startViewer(root) {
     state.cutting = on;
     find("section").setAttribute("aria-pressed", String(on));
     find("profile").hidden = !on && state.cut.length < 2;
-    if (on) { find("profile-place").textContent = "Click the two ends of the section on the sole."; find("profile-lines").replaceChildren(); }
+    if (on) { say(find("profile-place"), "Click the two ends of the section on the sole."); find("profile-lines").replaceChildren(); }
   }
   find("section").addEventListener("click", () => {
     state.cut = []; state.cell = -1;
@@ -389,7 +397,9 @@ async function startViewer(root) {
     const rows = [gap, ...scene.quantities.filter((q) => SECTIONED.includes(q.name))];
     const fields = await Promise.all(rows.map((q) => Promise.all(drawings.map((d) => (q === gap ? (d.pane.pressed || d.pane.height).map((v) => v / gap.factor) : valuesNow(d, q))))));
     find("profile").hidden = false;
-    find("profile-place").textContent = `Section from x ${(a[0] * 1e3).toFixed(1)} mm, y ${(a[1] * 1e3).toFixed(1)} mm to x ${(b[0] * 1e3).toFixed(1)} mm, y ${(b[1] * 1e3).toFixed(1)} mm: ${long.toFixed(1)} mm`;
+    const [from, to] = [a, b].map(inMillimetres), ends = { x_from: from.x, y_from: from.y, x_to: to.x, y_to: to.y };
+    say(find("profile-place"), "Section from x {x_from} mm, y {y_from} mm to x {x_to} mm, y {y_to} mm: {length} mm", { ...ends, length: long.toFixed(1) });
+    const highest = [];
     find("profile-lines").innerHTML = rows.map((q, n) => {
       const lines = drawings.map(({ pane }, k) => Array.from({ length: count + 1 }, (_, s) => {
         const [x, y] = [0, 1].map((c) => a[c] + (b[c] - a[c]) * s / count), cell = cellOf(pane, [x, y]);
@@ -402,8 +412,10 @@ async function startViewer(root) {
         if (v !== v) made.push([]); else made[made.length - 1].push(`${1000 * s / count},${(100 - 96 * v / most).toFixed(1)}`);
         return made;
       }, [[]]).filter((part) => part.length > 1).map((part) => `<polyline stroke="${INKS[k % 4]}" points="${part.join(" ")}"/>`).join("")).join("");
-      return `<h4>${q.title} (${q.unit}), up to ${shortNumber(most)}</h4><svg data-section="${q.name}" viewBox="0 0 1000 100" preserveAspectRatio="none" role="img" aria-label="${q.title}"><line class="axis" x1="0" y1="100" x2="1000" y2="100"/>${drawn}</svg>`;
+      highest.push(shortNumber(most));
+      return `<h4></h4><svg data-section="${q.name}" viewBox="0 0 1000 100" preserveAspectRatio="none" role="img" aria-label="${q.title}"><line class="axis" x1="0" y1="100" x2="1000" y2="100"/>${drawn}</svg>`;
     }).join("");
+    find("profile-lines").querySelectorAll("h4").forEach((head, n) => say(head, "{quantity} ({unit}), up to {most}", { quantity: rows[n].title, unit: rows[n].unit, most: highest[n] }));
   }
 
   // One sole after the other at one place, seen with one camera.
@@ -633,7 +645,7 @@ async function startViewer(root) {
 function openViewer(root) {
   return startViewer(root).catch((problem) => {
     const note = root.querySelector('[data-part="loading"]');
-    note.textContent = `The 3-D picture can't be shown here (${problem.message}). The maps of the page show the same fields.`;
+    say(note, "The 3-D picture can't be shown here ({problem}). The maps of the page show the same fields.", { problem: problem.message });
     note.hidden = false;
     root.querySelector(".body").hidden = true;
     root.dataset.ready = "no";
