@@ -130,7 +130,7 @@ def test_draws(file_regression):
             for drag in (1e-3, 0.05)
             for middle in (False, True)
         ],
-        "between": np.quantile(draws.between("x", (1.0, 16.0)), (0.0, 0.5, 1.0)),
+        "between": np.quantile(draws.drawn_between("x", (1.0, 16.0)), (0.0, 0.5, 1.0)),
         "floor": joint.floor_name(aqueous),
         "alike": [
             float(np.corrcoef(draws.beyond_roughness("hall", name, family),

@@ -109,7 +109,7 @@ def test_the_roughness_that_readings_leave_is_told_of_floors_that_were_read():
     )  # fmt: skip
     place: Any = SimpleNamespace(floors=floors)
     ends = dict.fromkeys(("read", "bare", "unread"), (1e-6, 1e-5)) | {"measured": (2e-6, 2e-6)}
-    made = choice._read_floors(place, SimpleNamespace(between=between), ends)  # type: ignore
+    made = choice._read_floors(place, SimpleNamespace(drawn_between=between), ends)  # type: ignore
     assert asked == [(f"roughness of floor {name}", (1e-6, 1e-5)) for name in ("read", "bare")]
     assert sorted(made) == ["bare", "read"]
     deviation = 4.0 * 0.95 * math.log(4) / 3.92

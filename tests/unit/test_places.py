@@ -373,7 +373,7 @@ def test_a_reading_moves_what_it_is_of_and_leaves_other_floors():
         other = np.median(joint.share("roughness of floor other"))
         likelihood = device.log_likelihood(joint, "hall", span, FLUIDS["water"], reading)
         joint.learn(likelihood, "hall")
-        medians.append(np.median(joint.between("roughness of floor hall", span)))
+        medians.append(np.median(joint.drawn_between("roughness of floor hall", span)))
         assert np.median(joint.share("roughness of floor other")) == pytest.approx(other, abs=0.05)
     assert medians[0] < medians[1]
 
@@ -915,7 +915,7 @@ def test_only_the_roughness_of_a_floor_that_was_read_and_not_measured_is_told_an
         for name, readings in (("read", ("a",)), ("unread", ()), ("measured", ("a",)))
     ]
     joint = SimpleNamespace(
-        between=lambda name, ends: ends[0] * (ends[1] / ends[0]) ** np.linspace(0, 1, 4001)
+        drawn_between=lambda name, ends: ends[0] * (ends[1] / ends[0]) ** np.linspace(0, 1, 4001)
     )
     ends = {"read": (UM, 16 * UM), "unread": (UM, 16 * UM), "measured": (3 * UM, 3 * UM)}
     place = SimpleNamespace(floors=floors)

@@ -57,7 +57,7 @@ class Device:
 
 def test_a_floor_with_readings_has_its_roughness_before_and_after_them():
     drawn = {("roughness of floor hall", (1e-6, 4e-6)): np.full(99, 2e-6)}
-    joint = SimpleNamespace(between=lambda name, ends: drawn[name, ends])
+    joint = SimpleNamespace(drawn_between=lambda name, ends: drawn[name, ends])
     read, unread = (
         SimpleNamespace(name=name, readings=readings)
         for name, readings in (("hall", ("one",)), ("stair", ()))

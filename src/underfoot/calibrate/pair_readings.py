@@ -196,7 +196,9 @@ def read_pair_readings(path: Path) -> tuple[PairReading, ...]:
             remedy='Write [[reading]], case = "my_case.toml", cof = 0.24, sd = 0.02',
         )
     return tuple(
-        _reading(entry, path.parent, f"{path.name}, reading {number}")
+        _reading(
+            entry, path.parent, Message("{file}, reading {number}", file=path.name, number=number)
+        )
         for number, entry in enumerate(entries, start=1)
     )
 

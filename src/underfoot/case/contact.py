@@ -12,6 +12,7 @@ import numpy as np
 
 from underfoot.core import Breach, Cache, SourcedValue, display
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 
 from .context import Context
 from .quantity import Flag, Quantity, default, optional
@@ -64,7 +65,9 @@ class _Published(HardnessOption):
         sourced = SourcedValue(
             modulus,
             "Pa",
-            source=f"{self.source} from Shore A {shore_a:g}",
+            source=Message(
+                "{relation} from Shore A {shore_a:g}", relation=self.source, shore_a=shore_a
+            ),
             uncertainty=HARDNESS_SPREAD * modulus,
             note="static modulus from hardness, good to tens of percent",
         )

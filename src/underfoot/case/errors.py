@@ -116,11 +116,14 @@ def _translate_error(
         )
     if kind in ("greater_than_equal", "less_than_equal"):
         bound = context.get("ge", context.get("le"))
-        side = "at least" if kind.startswith("greater") else "at most"
+        least, most = (
+            Message("at least {least}", least=bound),
+            Message("at most {most}", most=bound),
+        )
         return RangeError(
             Message("{given} is outside the range", given=given),
             where=where,
-            allowed=f"{side} {bound}",
+            allowed=least if kind.startswith("greater") else most,
         )
     return InputError(
         Message("{given} can't be used here", given=repr(given)),

@@ -309,7 +309,9 @@ class ConstantOption(FrictionOption):
             yield RangeError(
                 f"{self.hysteresis_cof:g} is more than the whole",
                 where=f"{where}.hysteresis_cof",
-                allowed=f"at most {self.cof:g} (friction.cof)",
+                allowed=Message(
+                    "at most {most} ({what})", most=f"{self.cof:g}", what="friction.cof"
+                ),
             )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from underfoot.core import InputError, RangeError, display, to_si
+from underfoot.core.remark import Amount, Message
 
 from .quantity import Flag, Force, Length, Quantity, Speed, default, optional
 from .section import DEFAULT, CaseView, Leaf, Option, Origin, Section
@@ -100,7 +101,11 @@ class HeldMotion(Motion):
             yield RangeError(
                 f"{display(self.end_time, 's')} ends before the force has risen",
                 where=f"{where}.duration",
-                allowed=f"at least {display(self.force_rise_time, 's')} (motion.force_rise_time)",
+                allowed=Message(
+                    "at least {least} ({what})",
+                    least=Amount(self.force_rise_time, "s"),
+                    what="motion.force_rise_time",
+                ),
                 remedy=remedy,
             )
         if self.end_time is None and self.steady is False:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from underfoot.core import InputError, RangeError, display
-from underfoot.core.remark import Message
+from underfoot.core.remark import Amount, Message
 
 from .lettering import check_text, text_rings
 from .quantity import Angle, Depth, LargeRadius, Length, Quantity, Rounding, default, optional
@@ -163,8 +163,11 @@ class HeelPlan(SolePlan):
                 yield RangeError(
                     f"{display(getattr(self, name), 'm')} does not fit the plan form",
                     where=f"{where}.{name}",
-                    allowed=f"at most {display(limit, 'm')} (half of the smaller of length and "
-                    "width)",
+                    allowed=Message(
+                        "at most {most} ({what})",
+                        most=Amount(limit, "m"),
+                        what="half of the smaller of length and width",
+                    ),
                 )
 
 
@@ -328,7 +331,11 @@ class Lugs(TreadPattern):
                 yield RangeError(
                     f"{display(getattr(self, name), 'm')} does not fit on the lug",
                     where=f"{where}.{name}",
-                    allowed=f"at most {display(rounding, 'm')} (the depth and half the lug width)",
+                    allowed=Message(
+                        "at most {most} ({what})",
+                        most=Amount(rounding, "m"),
+                        what="the depth and half the lug width",
+                    ),
                 )
         if self.edge_radius > 0 and self.edge_chamfer > 0:
             yield InputError(
@@ -349,7 +356,11 @@ class Lugs(TreadPattern):
             yield RangeError(
                 f"{display(cuts.depth, 'm')} is deeper than the lug",
                 where=f"{where}.depth",
-                allowed=f"at most {display(self.depth, 'm')} (shoe.tread.depth)",
+                allowed=Message(
+                    "at most {most} ({what})",
+                    most=Amount(self.depth, "m"),
+                    what="shoe.tread.depth",
+                ),
             )
         if cuts.depth == 0.0:
             yield RangeError("0 mm is no sipe", where=f"{where}.depth", allowed="above 0 mm")
@@ -501,7 +512,11 @@ class LetteringTread(Lugs):
             yield RangeError(
                 f"{display(self.edge_radius, 'm')} does not fit on the letters' strokes",
                 where=f"{where}.edge_radius",
-                allowed=f"at most {display(min(self.depth, stroke / 2), 'm')} (half a stroke)",
+                allowed=Message(
+                    "at most {most} ({what})",
+                    most=Amount(min(self.depth, stroke / 2), "m"),
+                    what="half a stroke",
+                ),
             )
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from underfoot.core import InputError, RangeError, display, to_si
-from underfoot.core.remark import Message
+from underfoot.core.remark import Amount, Message
 
 from .quantity import Angle, Depth, Force, Length, Quantity, Rounding, default, optional
 from .section import GIVEN, CaseView, Option, Origin, leaf_of, refused_at
@@ -128,7 +128,9 @@ class PatchWear(Wear):
                 yield RangeError(
                     f"a worn patch of {display(getattr(self, name), 'm')} is larger than the shoe",
                     where=f"{where}.{name}",
-                    allowed=f"at most {display(most, 'm')}, the extent of the sole",
+                    allowed=Message(
+                        "at most {most}, the extent of the sole", most=Amount(most, "m")
+                    ),
                 )
 
 

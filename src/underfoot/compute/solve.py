@@ -12,6 +12,7 @@ from underfoot.case import Case
 from underfoot.core import ConvergenceError, InputError, Progress, silent
 from underfoot.core.pool import in_processes
 from underfoot.core.progress import part
+from underfoot.core.remark import Message
 from underfoot.film import FilmModel, NewtonianFilm
 from underfoot.friction import FrictionLaw
 from underfoot.friction.sampled_cof import FLOW, GAP, LEAK
@@ -287,7 +288,8 @@ def average_positions(
             return
         ends = np.cumsum([0.0, *(spacing**-2 for _, spacing in asked)])
         for k, (place, spacing) in enumerate(asked):
-            name, begin, end = f"Position {k + 2} of {len(asked) + 1}", *ends[k : k + 2] / ends[-1]
+            begin, end = ends[k : k + 2] / ends[-1]
+            name = Message("Position {number} of {count}", number=k + 2, count=len(asked) + 1)
             yield k, _numbers_at(parts, place, spacing, part(progress, begin, end, name))
 
     known = {TreadPlace(): place_numbers(parts, solution.contact)}

@@ -205,7 +205,10 @@ class StudyCheck(Presentable):
             listed = [value_text(one.path, option) for option in options or ()]
             rows.append(("vary", one.path, ", ".join(listed) or " to ".join(ends)))
         rows += [("fixed", path, value_text(path, value)) for path, value in plan.fixed.items()]
-        rows += [("follows", each.path, f"{each.times:g} x {each.of}") for each in plan.follow]
+        rows += [
+            ("follows", each.path, Message("{times:g} x {of}", times=each.times, of=each.of))
+            for each in plan.follow
+        ]
         for each in plan.uncertain:
             ends = [value_text(each.path, each.value(share)) for share in (0.025, 0.975)]
             rows.append(("uncertain", each.path, Message("{ends: to } (95 %)", ends=ends)))

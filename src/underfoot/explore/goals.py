@@ -163,9 +163,10 @@ class WearLife:
     def phrase(self) -> str:
         """Return it as people say it: "wear life with COF > 0.12"."""
         bound = self.requirement
-        sign = ">" if bound.sense > 0 else "<"
-        limit = quantity_text(bound.bound, bound.goal.unit)
-        return f"wear life with {bound.goal.phrase} {sign} {limit}"
+        of = {"goal": bound.goal.phrase, "limit": quantity_text(bound.bound, bound.goal.unit)}
+        if bound.sense > 0:
+            return Message("wear life with {goal} > {limit}", **of)
+        return Message("wear life with {goal} < {limit}", **of)
 
     @property
     def of_draws(self) -> bool:

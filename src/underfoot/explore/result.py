@@ -545,7 +545,12 @@ class StudyResult(Presentable):
     def remarks(self) -> Mapping[str, Sequence[str]]:
         """Return why cases have no numbers, the most frequent reason first."""
         reasons = Counter(r.reason for r in self.records.values() if not r.usable)
-        return {"Without numbers": [f"{n} x {text}" for text, n in reasons.most_common()]}
+        return {
+            "Without numbers": [
+                Message("{count} x {reason}", count=n, reason=text)
+                for text, n in reasons.most_common()
+            ]
+        }
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data: endings, and every run of a design with inputs, goals and margins.

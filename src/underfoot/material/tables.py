@@ -206,7 +206,10 @@ class FileTable:
         values = self.numbers(column, infinite)
         if quantity in PURE:
             return values * (0.01 if self.unit(column) == "%" else 1.0)
-        unit, where = UNITS[quantity], f"{self.where}, column {column.name}"
+        unit, where = (
+            UNITS[quantity],
+            Message("{file}, column {column}", file=self.where, column=column.name),
+        )
         written = self.unit(column)
         if written in ("", "-"):
             raise DataError(
@@ -228,7 +231,10 @@ class FileTable:
             DataError: Neither decides, or they contradict each other.
         """
         column = self.needed("angular frequency", "frequency")
-        values, where = self.numbers(column), f"{self.where}, column {column.name}"
+        values, where = (
+            self.numbers(column),
+            Message("{file}, column {column}", file=self.where, column=column.name),
+        )
         angular = column.quantity == "angular frequency"
         written = self.unit(column, "frequency")
         unit = written.replace(" ", "").casefold()
@@ -572,7 +578,11 @@ class _Draft:
             return quantity is None or "" in sizes or sizes[0] == sizes[1]
 
         said = (named[1], self.units[k], self.inside.get(k, ""))
-        return one_unit(said, same, f"{where}, column {text.excerpt(named[0])}")
+        return one_unit(
+            said,
+            same,
+            Message("{file}, column {column}", file=where, column=text.excerpt(named[0])),
+        )
 
     def table(self, where: str, part: int, stated: Mapping[str, str]) -> FileTable:
         cells = list(zip(*(row for _, row in self.rows), strict=True))

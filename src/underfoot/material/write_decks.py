@@ -63,7 +63,9 @@ def deck_text(
         raise InputError(
             Message("{count} terms", count=len(terms)),
             where="series",
-            allowed=f"at most {MOST_TERMS[form]} in a material of {form}",
+            allowed=Message(
+                "at most {most} in a material of {form}", most=MOST_TERMS[form], form=form
+            ),
             remedy="Give fewer terms (underfoot.material.reduced)",
         )
     if form == "FEBio" and rest <= LEAST_AT_REST * at_once:

@@ -169,7 +169,7 @@ def floor_calibration(
         Message("roughness of floor {floor}", floor=FLOOR),
     )
     share = floor_name(pair)
-    before = interval(joint.between(roughness, pair.floor_rq))
+    before = interval(joint.drawn_between(roughness, pair.floor_rq))
     outside = [
         told for reading in readings for told in learn_floor(joint, FLOOR, pair.floor_rq, reading)
     ]
@@ -192,7 +192,7 @@ def floor_calibration(
         notes=draws.notes,
         outside=(*draws.outside, *outside),
     )
-    after = interval(joint.between(roughness, pair.floor_rq))
+    after = interval(joint.drawn_between(roughness, pair.floor_rq))
     return FloorCalibration(readings, pair_draws, before, after, joint.fewest)
 
 

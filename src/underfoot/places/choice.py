@@ -578,7 +578,7 @@ def choose_shoe(
         floor.name: _law(place.case(place.shoes[0], floor, "water")).pair.floor_rq
         for floor in place.floors
     }
-    before = {name: interval(joint.between(f"roughness of floor {name}", rq))
+    before = {name: interval(joint.drawn_between(f"roughness of floor {name}", rq))
               for name, rq in floor_rq.items()}  # fmt: skip
     outside = _learn(place, joint, floor_rq, new_cases)
     solver = _Solver(place, joint, quick, _read_floors(place, joint, floor_rq))
@@ -598,7 +598,7 @@ def choose_shoe(
     for shoe in place.shoes:
         states[shoe.name] = {}
         for worn in (False, True) if _wears(shoe) else (False,):
-            step(f"{shoe.name}{', worn' if worn else ''}")
+            step(Message("{shoe}, worn", shoe=shoe.name) if worn else shoe.name)
             states[shoe.name][worn] = solver.cells(shoe, place.floors, worn)
         new = states[shoe.name][False]
         shares[shoe.name] = _slips(place, joint, new)
@@ -639,7 +639,7 @@ def choose_shoe(
     smooth = [
         floor
         for floor in place.floors
-        if np.median(joint.between(f"roughness of floor {floor.name}", floor_rq[floor.name]))
+        if np.median(joint.drawn_between(f"roughness of floor {floor.name}", floor_rq[floor.name]))
         < ROUGH_FLOOR_RQ * (1 - IDLE)
     ]
     if smooth:
@@ -753,7 +753,8 @@ def _learn(
         law = _law(case)
         for reading in shoe.readings:
             cof = tested_cof(joint, case, law, shoe, slip_tests()[reading.test])
-            joint.learn(joint.log_likelihood(cof, reading.reading), f"shoe {shoe.name}")
+            where = Message("shoe {shoe}", shoe=shoe.name)
+            joint.learn(joint.log_likelihood(cof, reading.reading), where)
         known = shoe.known_class
         if known is not None:
             passed = np.zeros(joint.count)
@@ -763,7 +764,10 @@ def _learn(
                     cof, CofReading(reading.cof, reading.kind, reading.sd)
                 )
             log = np.log(np.maximum(-np.expm1(passed), 1e-12)) if known.fails else passed
-            joint.learn(log, f"shoe {shoe.name}, class {known.name}")
+            where = Message(
+                "shoe {shoe}, class {slip_class}", shoe=shoe.name, slip_class=known.name
+            )
+            joint.learn(log, where)
     return tuple(outside)
 
 
@@ -776,7 +780,9 @@ def _read_floors(
         low, high = floor_rq[floor.name]
         if not floor.readings or low == high:
             continue
-        low, middle, high = interval(joint.between(f"roughness of floor {floor.name}", (low, high)))
+        low, middle, high = interval(
+            joint.drawn_between(f"roughness of floor {floor.name}", (low, high))
+        )
         deviation = middle * math.log(high / low) / (2 * 1.96)
         rq = {"value": f"{1e6 * middle:.4g} um", "uncertainty": f"{1e6 * deviation:.4g} um"}
         section = {**floor.section, "roughness": {**floor.section.get("roughness", {}), "rq": rq}}
@@ -922,7 +928,7 @@ def _floors(
     for floor in place.floors:
         if floor.readings:
             after = interval(
-                joint.between(f"roughness of floor {floor.name}", floor_rq[floor.name])
+                joint.drawn_between(f"roughness of floor {floor.name}", floor_rq[floor.name])
             )
             texts = [
                 "{1:.2g} ({0:.2g} to {2:.2g})".format(*(1e6 * x for x in each))

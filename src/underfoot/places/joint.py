@@ -122,7 +122,7 @@ class PlaceDraws:
         shared = self.normal(f"floor {floor} beyond its roughness")
         return np.sqrt(FLOOR_LIKENESS) * shared + np.sqrt(1 - FLOOR_LIKENESS) * own
 
-    def between(self, name: str, ends: tuple[float, float]) -> Array:
+    def drawn_between(self, name: str, ends: tuple[float, float]) -> Array:
         """Return draws between two ends, even in the logarithm."""
         low, high = ends
         return low * (high / low) ** self.share(name)

@@ -281,7 +281,12 @@ class Machine:
                     title=self.title.lower(),
                 ),
                 where=where,
-                allowed=f"above {self.scale.least:g}, at most {self.most:g} {self.scale.unit}",
+                allowed=Message(
+                    "above {least:g}, at most {most:g} {unit}",
+                    least=self.scale.least,
+                    most=self.most,
+                    unit=self.scale.unit,
+                ),
                 remedy="Check machine and unit: a pendulum prints PTV (36), a ramp degrees (12), a "
                 "tribometer COF (0.42)",
             )
@@ -300,7 +305,7 @@ class Machine:
         def setting(what: str, ends: tuple[float, float]) -> Array:
             if known:
                 return np.full(joint.count, math.sqrt(ends[0] * ends[1]))
-            return joint.between(f"{what} of {self.name}", ends)
+            return joint.drawn_between(f"{what} of {self.name}", ends)
 
         pair = Pair(self.shore_a, self.sole_rq, floor_rq, fluid.family)
         bearing, drag = self.bearing, None
@@ -311,7 +316,7 @@ class Machine:
         else:
             pressure = setting("pressure", self.pressure)
         if fluid.viscosity is not None:
-            drag = setting("speed", self.speed) * joint.between(
+            drag = setting("speed", self.speed) * joint.drawn_between(
                 f"viscosity of {fluid.name}", fluid.viscosity
             )
         sole = f"specimen of {self.name}"
@@ -321,8 +326,8 @@ class Machine:
         )  # fmt: skip
         cof = cof * np.exp(self.deviation * joint.normal(f"{self.name}, untested"))
         if bearing is not None and length is not None and drag is not None:
-            rq = joint.between(f"roughness of floor {floor}", floor_rq)
-            rough = np.hypot(joint.between(f"roughness of sole {sole}", self.sole_rq), rq)
+            rq = joint.drawn_between(f"roughness of floor {floor}", floor_rq)
+            rough = np.hypot(joint.drawn_between(f"roughness of sole {sole}", self.sole_rq), rq)
             modulus = float(youngs_modulus_gent(self.shore_a))
             film, gap = bearing.film(
                 pressure, length, drag, rough, modulus, setting("wedge", TAPER)

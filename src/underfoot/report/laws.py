@@ -152,7 +152,8 @@ def _scan(scan: Scan, figure: Figure) -> None:
     right.loglog(2e3 * np.pi / q[inside], scan.density(q[inside]), "C0", label="measured")
     right.axvline(1e3 * scan.cutoff, color="0.6", lw=0.8, ls=":", label="cut-off of Ra, Rq")
     right.invert_xaxis()
-    right.set(xlabel="Wavelength, mm", ylabel="C(q), m⁴", title=f"Hurst {scan.hurst.value:.2f}")
+    right.set_title(f"Hurst {scan.hurst.value:.2f}")
+    right.set(xlabel="Wavelength, mm", ylabel="C(q), m⁴")
     right.legend(fontsize=8)
 
 

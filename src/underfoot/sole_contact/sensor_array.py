@@ -169,6 +169,9 @@ def array_reading(
     above = (by_place > threshold).any(axis=(1, 3)).sum(axis=0) * (samples[1] - samples[0])
 
     spread = "spread over where the shoe comes down"
+    above_it = Message(
+        "spread over where the shoe comes down; above {threshold:g} Pa", threshold=threshold
+    )
     return ArrayReading(
         time=samples,
         pressure=central,
@@ -178,6 +181,6 @@ def array_reading(
             over_places(by_place[:, row].max(axis=(0, 2)), "Pa", SOURCE, spread)
             for row in range(array.rows)
         ),
-        duration=over_places(above, "s", SOURCE, f"{spread}; above {threshold:g} Pa"),
+        duration=over_places(above, "s", SOURCE, above_it),
         threshold=threshold,
     )

@@ -140,7 +140,7 @@ def check_printable(shape: SoleShape) -> None:
             raise InputError(
                 f"{name} of {size * 1e3:g} mm can be neither printed nor moulded",
                 where=where,
-                allowed=f"at least {LEAST_PRINTABLE * 1e3:g} mm",
+                allowed=Message("at least {least:g} mm", least=LEAST_PRINTABLE * 1e3),
             )
     x = np.linspace(0.0, shape.length, 201)
     half = np.full_like(x, shape.width / 2)

@@ -114,7 +114,9 @@ class WornPatch:
                 raise InputError(
                     f"a worn patch of {value * 1e3:g} mm is larger than the shoe",
                     where=f"wear.{name}",
-                    allowed=f"at most {most * 1e3:g} mm, the extent of the sole",
+                    allowed=Message(
+                        "at most {most}, the extent of the sole", most=f"{most * 1e3:g} mm"
+                    ),
                 )
         middle = np.array([self.length / 2 if self.position is None else self.position])
         if shape.inward_distance(middle, np.array([self.lateral]))[0] <= 0:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from underfoot.core import Cache, Progress, Status, content_hash, silent
 from underfoot.core.arrays import Array
 from underfoot.core.constants import GRAVITY
+from underfoot.core.remark import Message
 from underfoot.friction import FrictionLaw
 from underfoot.rough_contact import PressureGapLaw
 from underfoot.shoe.geometry import SoleMap
@@ -179,7 +180,8 @@ def full_runs(
     def progress_of(number: int) -> Progress:
         def report(stage: str, fraction: float, residual: float | None = None) -> None:
             done = (number + fraction) / len(walkers)
-            progress(f"Slip {number + 1} of {len(walkers)}", done, residual)
+            slip = Message("Slip {number} of {count}", number=number + 1, count=len(walkers))
+            progress(slip, done, residual)
 
         return report
 

@@ -302,7 +302,9 @@ def _compact(table: TrialTable) -> TrialTable:
         return f"{texts[0]} ({texts[1]}), {texts[2]} to {texts[3]}"
 
     heads = (
-        replace(head, name=f"{head.name}: mean (SD), 95 %") if i in starts else head
+        replace(head, name=Message("{quantity}: mean (SD), 95 %", quantity=head.name))
+        if i in starts
+        else head
         for i, head in enumerate(table.heads)
         if i in shown
     )

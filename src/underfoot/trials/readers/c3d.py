@@ -513,7 +513,7 @@ def _plate(draft: RecordingDraft, raw: C3DFile, index: int, units: list[str], sc
     name = f"plate {index + 1}"
     kinds = raw.whole_numbers("FORCE_PLATFORM", "TYPE").ravel(order="F")
     kind = int(kinds[index]) if index < kinds.size else 0
-    text = plates.KINDS.get(kind, f"type {kind}")
+    text = plates.KINDS.get(kind, Message("type {kind}", kind=kind))
     try:
         if kind not in plates.CHANNELS:
             raise DataError(

@@ -177,7 +177,9 @@ def trial_from_sheet(draft: RecordingDraft, sheet: Sheet, source: str) -> Trial:
     for name, columns in plates.items() if draft.times is None else ():
         _plate(draft, name, columns, sheet)
     for name, (triple, unit) in _marker_columns(draft, sheet).items():
-        factor = _factor(unit, "m", f"{sheet.name}, marker {name}")
+        factor = _factor(
+            unit, "m", Message("{file}, marker {marker}", file=sheet.name, marker=name)
+        )
         draft.marker(name, np.column_stack([_column(sheet, c) for c in triple]) * factor)
     return draft.trial(source)
 
@@ -360,7 +362,7 @@ def _pressure_columns(
 
 
 def _plate(draft: RecordingDraft, name: str, columns: PlateColumns, sheet: Sheet) -> None:
-    where = f"{sheet.name}, plate {name}"
+    where = Message("{file}, plate {plate}", file=sheet.name, plate=name)
     force = np.zeros((len(next(iter(sheet.numbers.values()))), 3))
     for i, column in enumerate(columns.force):
         if column:  # unit of the profile, else the one in the heading, else N

@@ -157,7 +157,9 @@ def _sheet(
     for i, name in enumerate(text.unique_names([name for name, _ in pairs], "column", notes)):
         below = written[i] if i < len(written) else ""
         said = (pairs[i][1], below, inside.get(i, ""))
-        units[name] = one_unit(said, _same, f"{where}, column {name}")
+        units[name] = one_unit(
+            said, _same, Message("{file}, column {column}", file=where, column=name)
+        )
         if values is not None:
             numbers[name] = text.measurable(values[:, i], notes)
             continue

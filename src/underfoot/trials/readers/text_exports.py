@@ -178,7 +178,8 @@ def read_cortex_forces(draft: RecordingDraft) -> Trial:
     draft.rate = number_after(header["samplerate"], draft.name)
     expected = number_after(header["numberofsamples"], draft.name)
     if not 0 < draft.rate < 1e6:
-        raise draft.error(f"SampleRate is {draft.rate:g}", allowed="a positive rate in Hz")
+        rate = Message("{name} is {value:g}", name="SampleRate", value=draft.rate)
+        raise draft.error(rate, allowed="a positive rate in Hz")
     at = next((i for i, line in enumerate(lines[:30]) if line.startswith("#")), None)
     if at is None:
         raise draft.error("truncated: the column names are missing")

@@ -83,7 +83,12 @@ class Protocol:
         """Return a setting in SI, or ``default`` when the protocol does not say."""
         if key not in self.method:
             if default is None:
-                raise unknown_name("setting", key, self.method, where=f"protocol {self.name}")
+                raise unknown_name(
+                    "setting",
+                    key,
+                    self.method,
+                    where=Message("protocol {protocol}", protocol=self.name),
+                )
             return default
         return to_si(self.method[key].given, unit, where=f"protocol.{self.name}.method.{key}")
 

@@ -236,7 +236,9 @@ class Edit:
     @property
     def step_words(self) -> str:
         """The step as the edit names it."""
-        return f"step {self.step}" if isinstance(self.step, int) else f"step at {self.step:g} s"
+        if isinstance(self.step, int):
+            return Message("step {number}", number=self.step)
+        return Message("step at {time:g} s", time=self.step)
 
 
 @dataclass(frozen=True, slots=True, repr=False)

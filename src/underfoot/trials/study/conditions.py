@@ -679,9 +679,10 @@ def _column(
                 "Write the unit in the heading: {name} {unit}", name=name, unit=_COMPUTED[name]
             ),
         )
+    place = Message("{file}, column {column}", file=where, column=name)
     if unit and name in _SI_UNITS:
-        _refuse_other_unit(unit, _SI_UNITS[name], f"{where}, column {name}")
-    factor, offset = _to_si(unit, f"{where}, column {name}")
+        _refuse_other_unit(unit, _SI_UNITS[name], place)
+    factor, offset = _to_si(unit, place)
     values = [None if number is None else number * factor + offset for number in numbers]
     low, high, si, headings = _RANGES.get(name, (-math.inf, math.inf, "", ""))
     if name in _ANGLES:

@@ -409,11 +409,10 @@ def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person:
     return TrialTable.of("persons", "Persons", heads, rows, note)
 
 
-MODULI = tuple(
-    Message("{time}-time {what}", time=time, what=what)
-    for what in ("stiffness", "modulus", "Young's modulus")
-    for time in ("short", "long")
-)
+MODULI = (
+    "short-time stiffness", "long-time stiffness", "short-time modulus", "long-time modulus",
+    "short-time Young's modulus", "long-time Young's modulus",
+)  # fmt: skip
 
 
 def _relaxation(files: list[FileResult], protocol: Protocol) -> TrialStudy:

@@ -202,7 +202,10 @@ def shown_unit(name: str) -> str:
 def heading(name: str, what: str = "") -> str:
     """Return a column heading of a quantity (its mean, or ``what`` of it) with its unit."""
     tail = f" ({_UNITS[name]})" if name in _UNITS else ""
-    return quantity_name(name) + (f" {what}" if what else "") + tail
+    quantity = quantity_name(name)
+    if not what:
+        return quantity + tail
+    return Message("{quantity} {what}{tail}", quantity=quantity, what=what, tail=tail)
 
 
 def scale_to_heading(name: str, value: float | None) -> float | None:
@@ -423,7 +426,11 @@ def condition_table(
 
 def number_columns(name: str, decimals: int | None = None) -> list[TrialColumn]:
     """Return the columns of mean, SD and interval of a quantity."""
-    ends = [f"{quantity_name(name)} 95 % {end}" for end in ("low", "high")]
+    quantity = quantity_name(name)
+    ends = (
+        Message("{quantity} 95 % low", quantity=quantity),
+        Message("{quantity} 95 % high", quantity=quantity),
+    )
     heads = (heading(name), heading(name, "SD"), *ends)
     roles = (Role.MEAN, Role.SD, Role.LOW, Role.HIGH)
     return [TrialColumn(*both, name, decimals) for both in zip(heads, roles, strict=True)]
@@ -547,6 +554,10 @@ def curve_table(files: Iterable[FileResult]) -> TrialTable | None:
             for percent, own in zip(PERCENT, pairs, strict=True)
         ]
     names = [f"{n} (N)" if n != "ratio" else n for n in _CURVES]
-    both = [column for name in names for column in (f"mean {name}", f"SD {name}")]
+    both = [
+        column
+        for name in names
+        for column in (Message("mean {curve}", curve=name), Message("SD {curve}", curve=name))
+    ]
     heads = (*condition_columns(keys), "percent of stance", "persons" if person else "files", *both)
     return TrialTable.of("stance_curves", "Forces over stance", heads, rows)

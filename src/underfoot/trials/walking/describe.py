@@ -261,9 +261,10 @@ def _baseline(plate: Plate) -> str:
     )
 
 
-def _edit_words(edit: Edit) -> str:
+def _edit_words(edit: Edit) -> Message:
     value = f"{edit.value:g} s" if isinstance(edit.value, float) else edit.value or ""
-    return f"{edit.step_words}: {f'{edit.what} {value}'.rstrip()} ({edit.why})"
+    change = {"what": f"{edit.what} {value}".rstrip(), "why": edit.why}
+    return Message("{step}: {what} ({why})", step=edit.step_words, **change)
 
 
 def _parts(thing: object, names: str) -> dict[str, Any]:
