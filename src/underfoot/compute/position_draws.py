@@ -206,16 +206,14 @@ class TreadPositions:
         for name in self.values:
             if name in numbers and not name.startswith("cof"):
                 means[name] = replace(numbers[name], value=self.answer(name))
-        over = Message("over {count} {several}", count=len(self.places), several=self.several)
         means["fluid_load"] = replace(
-            means["fluid_load"],
-            note=Message("{range} {over}", range=self._range("fluid_load", "N"), over=over),
+            means["fluid_load"], note=self._range_over_places("fluid_load", "N")
         )
         means[f"cof_{self.origin}"] = SourcedValue(
             float(np.std(self.values["cof"])),
             source=f"contact and film at another {self.held}",
             reason="itself a standard deviation",
-            note=Message("{range} {over}", range=self._range("cof"), over=over),
+            note=self._range_over_places("cof"),
         )
         if self.by_angle:
             means["cof_shoe_angle"] = SourcedValue(
@@ -302,6 +300,12 @@ class TreadPositions:
             "position_fluid_load": at(self.values["fluid_load"], "N", "load on the film", **film),
         }
 
+    def _range_over_places(self, name: str, unit: str = "1") -> Message:
+        return Message(
+            "{range} over {count} positions of the tread",
+            range=self._range(name, unit), count=len(self.places),
+        )  # fmt: skip
+
     def _range(self, name: str, unit: str = "1") -> Message:
         values = self.values[name]
         return Message(
@@ -316,6 +320,12 @@ class ShoeAngles(TreadPositions):
     origin = "shoe_angle"
     held = "shoe angle"
     several = "shoe angles"
+
+    def _range_over_places(self, name: str, unit: str = "1") -> Message:
+        return Message(
+            "{range} over {count} shoe angles",
+            range=self._range(name, unit), count=len(self.places),
+        )  # fmt: skip
 
     def _more_odds(self, count: int, *, bevel: bool = True) -> Array:
         """Return what the bevel adds: the odds at its turn less those at the place's own."""

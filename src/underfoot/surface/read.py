@@ -499,7 +499,9 @@ def read_dektak(path: Path | str) -> tuple[Profile, tuple[InstrumentResult, ...]
     if not is_dektak(path) or start is None:
         raise DataError("this is not a Dektak CSV file", where=str(path))
     lateral, vertical = (
-        length_factor("".join(cell.split()[-1:]), f"{path}, line {start + 1}")
+        length_factor(
+            "".join(cell.split()[-1:]), Message("{file}, line {line}", file=path, line=start + 1)
+        )
         for cell in f"{lines[start]},".split(",")[:2]
     )
     rows: list[tuple[float, float]] = []

@@ -381,7 +381,7 @@ def _plate(draft: RecordingDraft, name: str, columns: PlateColumns, sheet: Sheet
         name if name.startswith("plate") else f"plate {name}",
         centre_of_pressure=place,
         corners=corners,
-        kind="columns " + ", ".join(columns.force),
+        kind=Message("columns {names}", names=columns.force),
     )
 
 

@@ -9,7 +9,7 @@ from underfoot.core.remark import Message
 
 from ..recording.trial import Trial
 from .draft import RecordingDraft
-from .text import is_number, name_and_unit, si_unit, split, truncation_error
+from .text import is_number, line_of, name_and_unit, si_unit, split, truncation_error
 
 _TEXT_COLUMNS = ("image file name", "comments")
 # Speeds are written without a unit; the rolling speed beside them is in mm/s.
@@ -238,7 +238,7 @@ def read_fscan(draft: RecordingDraft) -> Trial:
         body = lines[at + 1 : at + 1 + rows]
         cells = [[c.strip() for c in line.split(",")][:columns] for line in body]
         if len(cells) < rows or any(len(row) < columns for row in cells):
-            where = f"{draft.name}, line {at + 1}"
+            where = line_of(draft.name, at + 1)
             raise DataError(
                 Message("truncated: frame {number} is not complete", number=number), where=where
             )

@@ -112,7 +112,7 @@ def table(
         for i, row in enumerate(cells):
             for j, cell in enumerate(row[:columns]):
                 if cell and j not in ignored:
-                    values[i, j] = _number(cell, forms[j], f"{where}, line {first_line + i}")
+                    values[i, j] = _number(cell, forms[j], where, first_line + i)
         counts = [min(len(row), columns) for row in cells]
         uneven = sum(count != max(counts) for count in counts)
         if uneven:
@@ -151,12 +151,17 @@ def check_rows(rows: Sequence[Sequence[str]], width: int, first_line: int, where
                     count=len(row),
                     width=width,
                 ),
-                where=f"{where}, line {first_line + i}",
+                where=line_of(where, first_line + i),
             )
     lengths = [min(len(row), width) for row in rows]
     if len(rows) > 1 and lengths[-1] < min(lengths[:-1]):
         words = "truncated: the last row is shorter than the others"
-        raise truncation_error(words, f"{where}, line {first_line + len(rows) - 1}")
+        raise truncation_error(words, line_of(where, first_line + len(rows) - 1))
+
+
+def line_of(file: str, line: int) -> Message:
+    """Return a line of a file as the place of an error."""
+    return Message("{file}, line {line}", file=file, line=line)
 
 
 def measurable(values: np.ndarray, notes: list[str]) -> np.ndarray:
@@ -205,13 +210,14 @@ def _load_numbers(rows: Sequence[str], delimiter: str) -> np.ndarray | None:
     return None if not values.all() and any_lost(rows) else values
 
 
-def _number(cell: str, form: NumberForm, where: str) -> float:
+def _number(cell: str, form: NumberForm, where: str, line: int) -> float:
     try:
         return form.number(cell)
     except ValueError:
         if cell.casefold() in NOTHING:
             return math.nan
-        raise DataError(f'"{cell[:40]}" is not a number', where=where) from None
+        what = Message('"{cell}" is not a number', cell=cell[:40])
+        raise DataError(what, where=line_of(where, line)) from None
 
 
 def number_after(line: str, where: str, delimiter: str = "=") -> float:

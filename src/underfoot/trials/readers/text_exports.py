@@ -9,7 +9,7 @@ from underfoot.core.remark import Message
 
 from ..recording.trial import Trial, Vertical
 from .draft import RecordingDraft
-from .text import delimiter_of, is_number, number_after, si_unit, split, truncation_error
+from .text import delimiter_of, is_number, line_of, number_after, si_unit, split, truncation_error
 
 
 def read_trc(draft: RecordingDraft) -> Trial:
@@ -20,7 +20,7 @@ def read_trc(draft: RecordingDraft) -> Trial:
     header = dict(zip(split(lines[1], "\t"), split(lines[2], "\t"), strict=False))
     labels = [cell for cell in split(lines[3], "\t")[2:] if cell]
     if not labels:
-        raise DataError("no marker is named", where=f"{draft.name}, line 4")
+        raise DataError("no marker is named", where=line_of(draft.name, 4))
     announced = header.get("NumMarkers", "")
     if announced.isdigit() and int(announced) < len(labels):
         draft.notes.append(
@@ -348,7 +348,7 @@ def _block(
 ) -> tuple[list[str], list[str], list[str], np.ndarray]:
     rate = split(lines[1], delimiter)[0].replace(",", ".") if len(lines) > 1 else ""
     if not is_number(rate) or not 0 < float(rate) < 1e6 or len(lines) < 6:
-        where = f"{draft.name}, line {start + 2}"
+        where = line_of(draft.name, start + 2)
         raise DataError("a block has no rate or no rows", where=where)
     draft.rate = float(rate)
     names, axes, units = (split(line, delimiter) for line in lines[2:5])

@@ -7,7 +7,7 @@ from underfoot.core.remark import Message
 
 from ..recording.trial import Trial
 from .draft import RecordingDraft
-from .text import is_number, si_unit
+from .text import is_number, line_of, si_unit
 
 
 def read_xsensor(draft: RecordingDraft) -> Trial:
@@ -71,5 +71,5 @@ def _seconds(header: dict[str, str], draft: RecordingDraft, line: int) -> float:
         return sum(float(part) * 60.0**i for i, part in enumerate(reversed(parts)))
     except ValueError:
         raise DataError(
-            Message('"{text}" is no time', text=text), where=f"{draft.name}, line {line}"
+            Message('"{text}" is no time', text=text), where=line_of(draft.name, line)
         ) from None

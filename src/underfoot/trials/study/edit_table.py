@@ -54,7 +54,7 @@ def edit_rows(
     edits: list[tuple[int, str, Edit]] = []
     rows = zip(*(cells[name][1] for name in COLUMNS), strict=True)
     for line, (name, step, what, value, why) in zip(lines, rows, strict=True):
-        where = f"{path.name}, line {line}"
+        where = Message("{file}, line {line}", file=path.name, line=line)
         file = named_file(name, labels)
         if file is None and others:
             continue
