@@ -11,8 +11,8 @@ import pytest
 from underfoot.compute.stated_spreads import StatedEffects
 from underfoot.core import InputError
 from underfoot.friction.shoe_class import slip_tests
-from underfoot.places import choice
-from underfoot.places.choice import _Solver, film_odds_over_positions, tread_place
+from underfoot.places import cells, choice
+from underfoot.places.cells import PlaceSolver, film_odds_over_positions, tread_place
 from underfoot.places.evidence import _of_file
 from underfoot.places.joint import FLOOR_LIKENESS, CofReading, PlaceDraws
 from underfoot.places.machines import FLUIDS, predicted_reading
@@ -33,12 +33,12 @@ def cell():
     joint = PlaceDraws()
     shoe, floor = place.shoes[0], place.floors[0]
     cases = {fluid: place.case(shoe, floor, fluid) for fluid in (THICK, "water")}
-    solver = _Solver(place, joint, True, {})
+    solver = PlaceSolver(place, joint, True, {})
 
     def made(cof, film=0.0, viscous=0.0, fluid=THICK):
         case = cases[fluid]
         march: Any = SimpleNamespace(spreads={}, stated=StatedEffects())
-        pair, tread = choice._law(case).pair, tread_place(case)
+        pair, tread = cells.law_of_pair(case).pair, tread_place(case)
         values = {
             "cof": cof,
             "cof_viscous": viscous,
@@ -85,10 +85,10 @@ def test_the_film_over_positions_is_told_against_the_tread_where_it_lies(monkeyp
     place = place_of(TABLE | treaded)
     case = place.case(place.shoes[0], place.floors[0], THICK)
     loads = iter(np.array([1 / 2, 2 / 3, 1 / 3]) * case.motion.normal_force)
-    monkeypatch.setattr(choice, "prepare_case", lambda *_: None)
-    monkeypatch.setattr(choice, "places", lambda *_: [0, 1, 2])
-    monkeypatch.setattr(choice, "solved_at", lambda *_: ())
-    monkeypatch.setattr(choice, "place_numbers", lambda: {"fluid_load": next(loads)})
+    monkeypatch.setattr(cells, "prepare_case", lambda *_: None)
+    monkeypatch.setattr(cells, "places", lambda *_: [0, 1, 2])
+    monkeypatch.setattr(cells, "solved_at", lambda *_: ())
+    monkeypatch.setattr(cells, "place_numbers", lambda: {"fluid_load": next(loads)})
     np.testing.assert_allclose(film_odds_over_positions(case), np.log([1, 2, 0.5]), atol=1e-12)
     smooth = place_of(TABLE)
     case = smooth.case(smooth.shoes[0], smooth.floors[0], THICK)

@@ -5,8 +5,8 @@ import copy
 import numpy as np
 import pytest
 
-from underfoot.places import choice
-from underfoot.places.choice import Cell, choose_shoe
+from underfoot.places.cells import Cell, PlaceSolver
+from underfoot.places.choice import choose_shoe
 from underfoot.places.place import place_of
 
 COF = {
@@ -50,7 +50,7 @@ def answers():
         return {plain(one.shoe.name): (one.best, one.slips.value) for one in told.shoes}, told
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(choice._Solver, "cells", cells)
+        patch.setattr(PlaceSolver, "cells", cells)
         yield answer
 
 

@@ -12,7 +12,7 @@ from underfoot.case import Case
 from underfoot.compute.resolve import resolve_context
 from underfoot.core import SourcedValue
 from underfoot.friction.pair_contact import Pair, UnexpectedReading
-from underfoot.places import calibration, choice, evidence, joint, machines, place
+from underfoot.places import calibration, cells, choice, evidence, joint, machines, place
 from underfoot.places.calibration import FloorReading
 from underfoot.places.joint import CofReading, PlaceDraws
 from underfoot.places.place import place_of, read_place
@@ -446,15 +446,15 @@ def test_numbers_of_choices(file_regression):
     draws = PlaceDraws(count=COUNT, seed=2)
     normal = draws.normal("friction")
 
-    def cells(level):
+    def cells_of(level):
         return {
-            (floor.name, fluid): choice.Cell(level * np.exp(0.3 * normal), level, 0.2)
+            (floor.name, fluid): cells.Cell(level * np.exp(0.3 * normal), level, 0.2)
             for floor in told.floors
             for fluid in floor.fluids
             if fluid != "dry"
         }
 
-    new, worn = cells(0.32), cells(0.2)
+    new, worn = cells_of(0.32), cells_of(0.2)
     slips = choice._slips(told, draws, new)
     after = choice._sum(choice._slips(told, draws, worn))
     today = choice._sum(slips)
@@ -486,7 +486,7 @@ def test_numbers_of_choices(file_regression):
         "monthly": [choice._monthly(each) for each in told.shoes],
         "oil": [choice._is_oil(told, old, fluid) for fluid in ("water", "canola_oil")],
         "floors": choice._floors(told, draws, rq, {"hall": (1e-6, 2e-6, 4e-6)}),
-        "names": len({choice.shoe_name(shoe) for shoe in told.shoes}),
+        "names": len({cells.shoe_name(shoe) for shoe in told.shoes}),
     }  # fmt: skip
     cases = {shoe.name: told.case(shoe, told.floors[0], "water") for shoe in told.shoes}
     answers["measured"] = choice._measurements(
@@ -506,9 +506,9 @@ def test_places_of_a_tread(file_regression):
     """Odds of the film over places of a tread are those of none where there is no tread or film."""
     bare = _case()
     dry = _case(shoe="work_shoe_full_tread", contaminant="none")
-    assert choice.film_odds_over_positions(bare).tolist() == [0.0]
-    assert choice.film_odds_over_positions(dry).tolist() == [0.0]
-    held(file_regression, [choice.tread_place(bare), choice.tread_place(dry)])
+    assert cells.film_odds_over_positions(bare).tolist() == [0.0]
+    assert cells.film_odds_over_positions(dry).tolist() == [0.0]
+    held(file_regression, [cells.tread_place(bare), cells.tread_place(dry)])
 
 
 def test_small_readings(file_regression):

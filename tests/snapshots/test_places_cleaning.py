@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from underfoot.places import choice
-from underfoot.places.choice import WASHED, Cell
+from underfoot.places.cells import Cell
+from underfoot.places.choice import WASHED
 from underfoot.places.place import PlaceFloor, PlaceShoe
 
 SHOE = PlaceShoe("old", {}, True, None, None, 0.0, None, None, ())

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from underfoot.core import ConvergenceError, InputError
-from underfoot.places import choice, evidence
+from underfoot.places import cells, choice, evidence
 from underfoot.places.place import PlaceFloor, PlaceShoe
 
 VISCOSITY = {"water": 1e-3, "glycerol": 0.2, "canola": 0.06, "gas": None}
@@ -42,15 +42,17 @@ def asked(monkeypatch):
                 raise InputError("it is none", where="here", allowed="a liquid")
             return SimpleNamespace(values={"of": f"continued {changes['contaminant']}"})
 
-    monkeypatch.setattr(choice, "Continuation", March)
-    monkeypatch.setattr(choice, "film_odds_over_positions", lambda case: f"moved {case.hash}")
-    monkeypatch.setattr(choice, "tread_place", lambda case: f"tread of {case.hash}")
-    monkeypatch.setattr(choice, "_law", lambda case: SimpleNamespace(pair=f"pair {case.hash}"))
+    monkeypatch.setattr(cells, "Continuation", March)
+    monkeypatch.setattr(cells, "film_odds_over_positions", lambda case: f"moved {case.hash}")
+    monkeypatch.setattr(cells, "tread_place", lambda case: f"tread of {case.hash}")
     monkeypatch.setattr(
-        choice, "resolve_context", lambda case: SimpleNamespace(viscosity_value=case.viscosity)
+        cells, "law_of_pair", lambda case: SimpleNamespace(pair=f"pair {case.hash}")
     )
     monkeypatch.setattr(
-        choice._Solver, "_cell",
+        cells, "resolve_context", lambda case: SimpleNamespace(viscosity_value=case.viscosity)
+    )
+    monkeypatch.setattr(
+        cells.PlaceSolver, "_cell",
         lambda self, case, values, march, shoe, floor, pair, moved, tread: (
             case.hash, values["of"], march.case.hash, shoe.name, floor.name, pair, moved, tread),
     )  # fmt: skip
@@ -65,7 +67,7 @@ def case_of(shoe, at, fluid, worn):
 def test_a_sole_is_marched_in_its_thickest_fluid_and_continued_to_the_others(asked):
     place: Any = SimpleNamespace(case=case_of)
     read = floor("read", ("water",))
-    solver = choice._Solver(place, Any, True, {"hall": read})  # type: ignore[arg-type]
+    solver = cells.PlaceSolver(place, Any, True, {"hall": read})  # type: ignore[arg-type]
     first = "old on read, glycerol"
     rest = ("old", "pair old on {}, {}", f"moved {first}", f"tread of {first}")
     found = solver.cells(SHOE, (HALL, KITCHEN), False)

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from underfoot.compute.stated_spreads import ODDS
-from underfoot.places import choice
-from underfoot.places.choice import _Solver, tread_place
+from underfoot.places import cells
+from underfoot.places.cells import PlaceSolver, tread_place
 from underfoot.places.joint import PlaceDraws
 from underfoot.places.place import place_of
 
@@ -27,7 +27,7 @@ def cell():
     place = place_of(TABLE)
     shoe, floor = place.shoes[0], place.floors[0]
     case = place.case(shoe, floor, THICK)
-    pair, tread = choice._law(case).pair, tread_place(case)
+    pair, tread = cells.law_of_pair(case).pair, tread_place(case)
 
     def made(draws, film=FILM, viscous=VISCOUS):
         joint = PlaceDraws()
@@ -35,7 +35,7 @@ def cell():
         march: Any = SimpleNamespace(spreads={}, stated=stated)
         load = film * case.motion.normal_force
         values = {"cof": COF, "cof_viscous": viscous, "fluid_load": load}
-        solver = _Solver(place, joint, True, {})
+        solver = PlaceSolver(place, joint, True, {})
         return solver._cell(case, values, march, shoe, floor, pair, np.zeros(1), tread).acof
 
     return made

@@ -10,8 +10,8 @@ from underfoot.explore.proposals import next_batch
 from underfoot.explore.record import Ending, Record
 from underfoot.explore.result import StudyResult
 from underfoot.explore.study_file import read_plan
-from underfoot.places import choice
-from underfoot.places.choice import Cell, choose_shoe
+from underfoot.places.cells import Cell, PlaceSolver
+from underfoot.places.choice import choose_shoe
 from underfoot.places.place import place_of
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -36,7 +36,7 @@ def choice_of(monkeypatch, cofs, *, floors=("hall",), fluids=None, wears=()):
                 found[floor.name, fluid] = Cell(pair[worn] * noise, pair[worn], 0.0)
         return {key: cell for key, cell in found.items() if key[1] != "dry"}
 
-    monkeypatch.setattr(choice._Solver, "cells", cells)
+    monkeypatch.setattr(PlaceSolver, "cells", cells)
     table = {
         "fluids": fluids or {"dry": 0.9, "water": 0.1},
         "floor": [{"name": name, "roughness": {"rq": "2 um"}, "area": area}

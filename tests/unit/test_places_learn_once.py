@@ -43,7 +43,7 @@ def test_a_shoe_is_learned_from_once_by_its_readings_and_its_class(monkeypatch, 
     shoes = [shoe("b", known_class=known), shoe("a", section="b", readings=readings),
              shoe("c", section="b", readings=readings)]  # fmt: skip
     monkeypatch.setattr(choice, "tested_cof", tested)
-    monkeypatch.setattr(choice, "_law", lambda case: f"law of {case}")
+    monkeypatch.setattr(choice, "law_of_pair", lambda case: f"law of {case}")
     monkeypatch.setattr(choice, "slip_tests", lambda: {"tile": "the tile"})
     place = SimpleNamespace(floors=[], shoes=shoes)
     cases = {name: f"case {name}" for name in "abc"}
