@@ -10,8 +10,9 @@ import pytest
 from underfoot.case import Case
 from underfoot.core import InputError
 from underfoot.questions.walked import WornPair
-from underfoot.questions.wear import WearSeries, trends, wear_series, worn_cases
+from underfoot.questions.wear import WearSeries, trends, wear_series
 from underfoot.questions.wear_limit import Crossing, WearPoint, first_exceeding, limit_crossing
+from underfoot.questions.worn_states import worn_cases
 from underfoot.report.question_figures import wear_figure
 from underfoot.shoe.worn import WearMeasures
 

@@ -9,7 +9,7 @@ from commands import called, process
 from underfoot.case import Case
 from underfoot.compute.sole import new_sole, read_outsole
 from underfoot.core import InputError
-from underfoot.questions.wear import _measures, worn_cases
+from underfoot.questions.worn_states import measures_of, worn_cases
 
 OUTSOLES = Path(__file__).parents[2] / "examples" / "outsoles"
 SPECS = sorted(path for path in OUTSOLES.glob("*.toml") if not path.stem.endswith("_glycerol"))
@@ -191,7 +191,8 @@ def test_a_bevelled_sole_from_a_file_wears_as_that_of_its_lengths(tmp_path, patt
         }
     )
     one, other = (
-        [_measures(worn) for worn in worn_cases(case, "plane", 3, 2e-3)] for case in (lengths, file)
+        [measures_of(worn) for worn in worn_cases(case, "plane", 3, 2e-3)]
+        for case in (lengths, file)
     )
     assert [each.removed_depth for each in one] == pytest.approx([0, 2e-3 / 3, 4e-3 / 3, 2e-3])
     # 0.02 mm is aimed at; the mean of the bevel of 25 mm is off by 0.0203 mm

@@ -28,7 +28,7 @@ from underfoot.core import InputError
 from underfoot.core.catalogue import KINDS, catalogue
 from underfoot.explore.study_file import FILE_VERSION as STUDY_VERSION
 from underfoot.questions.method import NICKNAMES
-from underfoot.questions.wear import MODES
+from underfoot.questions.worn_states import MODES
 from underfoot.studies import studies
 from underfoot.trials import RcofDefinition
 from underfoot.trials.recording.protocols import protocol_names

@@ -25,6 +25,7 @@ from underfoot.questions import (
     walked,
     wear,
     wear_limit,
+    worn_states,
 )
 from underfoot.questions.wear_limit import Crossing, WearPoint
 from underfoot.shoe.worn import WearMeasures
@@ -208,7 +209,7 @@ def test_where_a_load_exceeds_its_limit(file_regression):
 
 def test_states_of_wear(file_regression):
     def states(mode, steps=3, deepest=None, case=TREADED):
-        found = wear.worn_cases(case, mode, steps, deepest)
+        found = worn_states.worn_cases(case, mode, steps, deepest)
         return [
             {
                 k: each.value(f"shoe.wear.{k}")
@@ -217,10 +218,10 @@ def test_states_of_wear(file_regression):
             for each in found
         ]
 
-    told: dict[str, Any] = {mode: states(mode) for mode in wear.MODES}
+    told: dict[str, Any] = {mode: states(mode) for mode in worn_states.MODES}
     told["deep"] = [states("plane", 2, 1e-3), states("patch", 2, 1e-4)]
     told["refused"] = [refusal(states, "plane", 2, deepest) for deepest in (0.0, 0.5)]
-    told["between"] = wear.measures_between(TREADED, [TREADED] * 2, "plane", 1e-3)
+    told["between"] = worn_states.measures_between(TREADED, [TREADED] * 2, "plane", 1e-3)
     told["modes"] = [wear.wear_mode(None, TREADED), wear.wear_mode("patch", TREADED),
                      refusal(wear.wear_mode, "odd", TREADED)]  # fmt: skip
     told["limits"] = [wear.limit_load(text, 500.0) for text in ("5 N", "20 %", "0 N", "1 kN")]

@@ -23,6 +23,7 @@ from underfoot.questions import (
     separation,
     slips,
     wear,
+    worn_states,
 )
 from underfoot.questions.changes import Change
 from underfoot.questions.sensitivity import OpenInput
@@ -427,7 +428,7 @@ def test_series_of_wear_of_made_up_runs(file_regression, monkeypatch):
     told["trends"] = wear.trends(one)
     told["asked"] = asked
     deep = PAD.replace({"shoe.wear.depth": "0.5 mm"})
-    told["worn"] = wear._replaced_wear_note(deep), wear._extent(PAD)
+    told["worn"] = wear._replaced_wear_note(deep), worn_states.tread_and_heel(PAD)
     told["refused"] = [
         refusal(wear.wear_series, PAD, mode="odd"), refusal(wear.wear_series, PAD, steps=1),
         refusal(wear.wear_series, made.CASE), refusal(wear.wear_series, PAD, limit=0.0),

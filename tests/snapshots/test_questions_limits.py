@@ -27,6 +27,7 @@ from underfoot.questions import (
     walked,
     wear,
     wear_limit,
+    worn_states,
 )
 from underfoot.questions.wear_limit import Crossing, WearPoint
 from underfoot.shoe.worn import WearMeasures
@@ -282,7 +283,7 @@ def test_a_series_without_maps_has_the_shapes_of_its_soles_alone(file_regression
 
 EXTENTS = {
     "heel": ({}, 1.0),
-    "sole": (WIDE_SOLE, wear.HEEL_PART),
+    "sole": (WIDE_SOLE, worn_states.HEEL_PART),
 }
 
 
@@ -290,16 +291,16 @@ EXTENTS = {
 def test_the_heel_of_a_whole_sole_is_a_part_of_it(name):
     changed, part = EXTENTS[name]
     case = TREADED.replace(changed)
-    depth, length, width = wear._extent(case)
+    depth, length, width = worn_states.tread_and_heel(case)
     heel: Any = case.shoe.heel
     assert (depth, length) == (case.value("shoe.tread.depth"), pytest.approx(heel.length * part))
     assert width == heel.width
-    last = wear.worn_cases(case, "patch", 4, None)[-1]
+    last = worn_states.worn_cases(case, "patch", 4, None)[-1]
     assert last.value("shoe.wear.patch_length") == pytest.approx(0.8 * length)
     assert last.value("shoe.wear.patch_width") == pytest.approx(0.8 * width)
     areas = [
         one.value("shoe.wear.patch_length") * one.value("shoe.wear.patch_width")
-        for one in wear.worn_cases(case, "patch", 4, 1e-4)[1:]
+        for one in worn_states.worn_cases(case, "patch", 4, 1e-4)[1:]
     ]
     # an ellipse: even steps of its area
     assert np.pi / 4 * np.array(areas) == pytest.approx([0.25e-4, 0.5e-4, 0.75e-4, 1e-4])
@@ -312,7 +313,11 @@ def test_a_file_longer_than_a_heel_is_a_sole(monkeypatch, long, part, wide):
         "underfoot.compute.sole.file_outsole", lambda _: SimpleNamespace(surface=surface)
     )
     case: Any = SimpleNamespace(shoe=SimpleNamespace(heel=None, outsole=object()))
-    assert wear._extent(case) == (3e-3, pytest.approx(long * part), pytest.approx(0.08 * wide))
+    assert worn_states.tread_and_heel(case) == (
+        3e-3,
+        pytest.approx(long * part),
+        pytest.approx(0.08 * wide),
+    )
     told = refusal(wear.wear_series, case, mode="archard")
     assert "needs a parametric sole" in told
 
@@ -322,7 +327,10 @@ def test_series_end_where_the_sole_allows(file_regression):
     thin = TREADED.replace({"shoe.sole.outsole_thickness": "5 mm", "shoe.tread.depth": "3 mm"})
 
     def depths(case, mode, steps=2, deepest=None):
-        return [one.value("shoe.wear.depth") for one in wear.worn_cases(case, mode, steps, deepest)]
+        return [
+            one.value("shoe.wear.depth")
+            for one in worn_states.worn_cases(case, mode, steps, deepest)
+        ]
 
     assert depths(thick, "plane") == pytest.approx([0, 1.5e-3, 3e-3])
     assert depths(thick, "walk") == pytest.approx([0, 3.6e-3, 7.2e-3])
@@ -334,15 +342,15 @@ def test_series_end_where_the_sole_allows(file_regression):
     given = thick.replace({"shoe.wear.mode": "plane", "shoe.wear.angle": "9 deg",
                            "shoe.wear.depth": "1 mm"})  # fmt: skip
     angles = [
-        math.degrees(wear.worn_cases(one, "plane", 1, None)[-1].value("shoe.wear.angle"))
+        math.degrees(worn_states.worn_cases(one, "plane", 1, None)[-1].value("shoe.wear.angle"))
         for one in (thick.replace("motion.shoe_angle", "7 deg"), turned, given)
     ]
     assert angles == pytest.approx([7.0, 0.0, 9.0])
-    case = wear.worn_cases(thick, "walk", 1, None)[-1]
+    case = worn_states.worn_cases(thick, "walk", 1, None)[-1]
     held(file_regression, {
-        mode: wear._assumptions(wear.worn_cases(thick, mode, 1, None)[-1], mode,
+        mode: wear._assumptions(worn_states.worn_cases(thick, mode, 1, None)[-1], mode,
                                 sensitivity.open_inputs(case)[:1])
-        for mode in wear.MODES
+        for mode in worn_states.MODES
     })  # fmt: skip
 
 
@@ -353,7 +361,7 @@ def test_shapes_are_worn_in_the_order_of_their_depth(monkeypatch):
                         lambda case: worn.append(case.shoe.wear.depth))  # fmt: skip
     cases: Any = [SimpleNamespace(shoe=SimpleNamespace(wear=SimpleNamespace(depth=depth)))
                   for depth in (3e-3, 0.0, 1e-3, 2e-3, 0.0, 4e-3)]  # fmt: skip
-    wear._wear_down(cases, lambda stage, share, *more: heard.append((stage, share)))
+    worn_states.wear_down(cases, lambda stage, share, *more: heard.append((stage, share)))
     assert worn == [1e-3, 2e-3, 3e-3, 4e-3]
     assert heard == [("Wearing the sole", share) for share in (0.0, 0.25, 0.5, 0.75)]
     told = []

@@ -9,8 +9,9 @@ import pytest
 
 import underfoot.shoe.worn as shapes
 from underfoot.compute import sole
-from underfoot.questions import wear
-from underfoot.questions.wear import PARTS, _assumptions, measures_between
+from underfoot.questions import worn_states
+from underfoot.questions.wear import _assumptions
+from underfoot.questions.worn_states import PARTS, measures_between
 
 
 def test_between_two_states_the_removed_thickness_is_linear(monkeypatch):
@@ -47,8 +48,8 @@ def test_a_shape_that_is_known_is_measured_in_even_parts_of_each_step(monkeypatc
     def worn(case, of, steps, deepest):
         return [(case, of, deepest, number / steps) for number in range(steps + 1)]
 
-    monkeypatch.setattr(wear, "worn_cases", worn)
-    monkeypatch.setattr(wear, "_measures", lambda case: case)
+    monkeypatch.setattr(worn_states, "worn_cases", worn)
+    monkeypatch.setattr(worn_states, "measures_of", lambda case: case)
     cases = cast(Any, ["new", 1, 2])
     found = measures_between(cast(Any, "case"), cases, mode, 3e-3)
     assert [one[:3] for one in found] == [("case", mode, 3e-3)] * (2 * PARTS + 1)

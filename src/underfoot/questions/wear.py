@@ -22,29 +22,17 @@ from .outcomes import CaseOutcome, outcomes
 from .sensitivity import OPEN_INPUTS, OpenInput, open_inputs, variants
 from .walked import SOURCES, Walked, WearWalker, WornPair
 from .wear_limit import Crossing, LimitCrossing, WearPoint, limit_crossing
+from .worn_states import MODES, measures_between, measures_of, tread_and_heel, wear_down, worn_cases
 
 if TYPE_CHECKING:
     from underfoot.case import Case
     from underfoot.shoe import SoleSurface
-    from underfoot.shoe.worn import WearMeasures
 
-MODES = ("walk", "archard", "plane", "patch")
 BAND_INPUTS = ("interface.roughness_beyond_cutoff", "shoe.material.shore_a")
 """What the band of the limit is made of: the least known inputs that decide the film."""
-LARGEST_PATCH = 0.8
-"""Largest patch of a series as a share of the heel's length and width."""
-BEYOND_TREAD = {"walk": 2.4, "archard": 1.6}
-"""Thickness lost at the end of a series, in depths of the tread: where a single place is worn
-through, the rest is not."""
 MAPS = {"contact_pressure": "contact pressure", "fluid_pressure": "fluid pressure"}
 """Fields that a series keeps of every state."""
 DRAWS = "cof_draws"
-PARTS = 6
-"""Parts of a step in which the wear is measured, to say how worn the sole is at the limit."""
-HEEL_PART = 0.25
-"""Share of a whole sole's length that is its heel."""
-LONGEST_HEEL, WIDTH_OF_HEEL = 0.12, 0.65
-"""m, and the heel's width as a share of a whole sole's (assumed: common lasts)."""
 
 
 EVEN = 5e-4
@@ -450,7 +438,7 @@ def wear_series(
             where="mode",
             allowed="walk, plane or patch with an outsole file",
         )
-    if not _extent(case)[0] > 0:
+    if not tread_and_heel(case)[0] > 0:
         raise InputError(
             "the sole has no tread to wear",
             where="shoe.tread.pattern",
@@ -485,7 +473,7 @@ def wear_series(
     shaped = 0.0
     if mode == "archard":
         shaped = 0.1
-        _wear_down(plan, part(progress, 0.0, shaped))
+        wear_down(plan, part(progress, 0.0, shaped))
     results = outcomes(
         [*plan, *bare],
         quick=quick,
@@ -500,7 +488,7 @@ def wear_series(
         middle, *ends = results[number * per_state : (number + 1) * per_state]
         pairs = zip(inputs, ends[::2], ends[1::2], strict=True)
         varied = tuple((each.path, low, high) for each, low, high in pairs)
-        points.append(WearPoint(_measures(worn), middle, varied))
+        points.append(WearPoint(measures_of(worn), middle, varied))
     between = measures_between(case, cases, mode, deepest)
     soles = tuple(map(bottom_surface, [*cases, *bare]))
     shown = [*(point.outcome for point in points), *results[len(plan) :]]
@@ -577,115 +565,6 @@ def deepest_wear(text: str | None, mode: str) -> float | None:
     if text is None:
         return None
     return to_si(text, "m^2" if mode == "patch" else "m", where="--to")
-
-
-def worn_cases(case: Case, mode: str, steps: int, deepest: float | None) -> list[Case]:
-    """Return the case new and worn in ``steps`` equal steps.
-
-    Parameters:
-        case: The new shoe.
-        mode: Name of an option of ``shoe.wear``.
-        steps: Number of equal steps.
-        deepest: Wear of the last one, m; m^2 of a patch. None takes what the sole allows.
-    """
-    depth, heel_length, heel_width = _extent(case)
-    angle = case.value("shoe.wear.angle")
-    if angle is None or case.origins["shoe.wear.angle"].kind == "default":
-        angle = max(case.motion.shoe_angle, 0.0)
-    new = case.replace("shoe.wear.depth", "0 mm")
-    share = np.arange(1, steps + 1) / steps
-    if mode == "patch":
-        length, width = heel_length * LARGEST_PATCH, heel_width * LARGEST_PATCH
-        if deepest is not None:
-            grow = math.sqrt(deepest / (math.pi / 4 * length * width))
-            length, width = length * grow, width * grow
-        states = [
-            {"depth": depth, "patch_length": length * part, "patch_width": width * part}
-            for part in map(float, np.sqrt(share))
-        ]
-    else:
-        thickness = case.shoe.sole.outsole_thickness
-        end = depth if deepest is None else deepest
-        if deepest is None and mode in BEYOND_TREAD:
-            end = min(BEYOND_TREAD[mode] * depth, (depth + thickness) / 2)
-        if not 0 < end < thickness:
-            most = display(thickness, "m")
-            raise InputError(
-                Message("wear of {end} is none, or deeper than the sole", end=display(end, "m")),
-                where="deepest",
-                allowed=Message(
-                    "above 0 mm and below {most} (shoe.sole.outsole_thickness)", most=most
-                ),
-            )
-        states = [{"depth": end * part} for part in map(float, share)]
-        if mode != "walk":
-            states = [{**state, "angle": float(angle)} for state in states]
-    changes = [{f"shoe.wear.{key}": value for key, value in state.items()} for state in states]
-    return [new, *(new.replace({"shoe.wear.mode": mode, **change}) for change in changes)]
-
-
-def measures_between(
-    case: Case, cases: list[Case], mode: str, deepest: float | None
-) -> list[WearMeasures]:
-    """Return how worn the sole is from new to the end, in ``PARTS`` even parts of each step.
-
-    Between two states of Archard wear the removed thickness is taken as linear.
-    """
-    steps = len(cases) - 1
-    if mode != "archard":
-        return [_measures(worn) for worn in worn_cases(case, mode, steps * PARTS, deepest)]
-    from underfoot.compute.sole import archard_state, new_sole
-    from underfoot.shoe.worn import WornMap, wear_measures
-
-    new = new_sole(cases[0])
-    maps = [archard_state(worn).worn for worn in cases[1:]]
-    removed = [np.zeros_like(maps[0].removed), *(worn.removed for worn in maps)]
-    measures = []
-    for place in np.linspace(0, steps, steps * PARTS + 1):
-        before = min(int(place), steps - 1)
-        share = place - before
-        blend = (1 - share) * removed[before] + share * removed[before + 1]
-        worn = WornMap(maps[0].x, maps[0].y, blend)
-        measures.append(wear_measures(new.worn(worn)))
-    return measures
-
-
-def _wear_down(cases: list[Case], progress: Progress) -> None:
-    """Compute the worn shapes one after the other, so that none is worn twice."""
-    from underfoot.compute.sole import archard_state
-
-    waiting = [worn for worn in cases if worn.shoe.wear.depth > 0]
-    waiting.sort(key=lambda worn: worn.shoe.wear.depth)
-    for number, worn in enumerate(waiting):
-        progress("Wearing the sole", number / len(waiting))
-        archard_state(worn)
-
-
-def _extent(case: Case) -> tuple[float, float, float]:
-    """Return depth of the tread, length and width of the heel, m."""
-    heel: Any = case.shoe.heel
-    if case.shoe.outsole is not None:
-        from underfoot.compute.sole import file_outsole
-
-        surface = file_outsole(case).surface
-        # longer than a heel can be: a whole sole or its rear half
-        part = HEEL_PART if surface.length > LONGEST_HEEL else 1.0
-        width = surface.width if part == 1.0 else WIDTH_OF_HEEL * surface.width
-        return float(surface.tread_depth.max()), surface.length * part, width
-    depth = case.value("shoe.tread.depth") or 0.0
-    return depth, heel.length * (HEEL_PART if heel.name == "sole" else 1.0), heel.width
-
-
-def _measures(case: Case) -> WearMeasures:
-    from underfoot.shoe.worn import surface_wear_measures, wear_measures
-
-    if case.shoe.outsole is not None:
-        from underfoot.compute.sole import file_outsole, file_surface
-
-        return surface_wear_measures(file_outsole(case).surface, file_surface(case))
-    from underfoot.compute.sole import sole_shape
-
-    return wear_measures(sole_shape(case))
 
 
 def _replaced_wear_note(case: Case) -> tuple[Message, ...]:
