@@ -14,7 +14,7 @@ from snapshot import held
 from underfoot.trials.pages import court_bundle
 from underfoot.trials.readers.seen import coded_forces, unseen
 from underfoot.trials.recording.plates import ordered_corners
-from underfoot.trials.study import conditions, folder
+from underfoot.trials.study import condition_table, folder
 
 
 def path(seed: int) -> np.ndarray:
@@ -150,7 +150,7 @@ def test_corners_on_a_line_stay_as_they_are():
 
 
 def test_what_is_a_unit_and_what_a_word():
-    assert [conditions._is_si(unit) for unit in ("cm", "kPa", "1", "hall", "%")] == [
+    assert [condition_table._is_si(unit) for unit in ("cm", "kPa", "1", "hall", "%")] == [
         True, True, False, False, False]  # fmt: skip
 
 

@@ -20,6 +20,7 @@ from underfoot.trials.recording.trial import Channel, Edit, Marker, Trial
 from underfoot.trials.simulator.folder import ScanTruth as Scanned
 from underfoot.trials.simulator.folder import disk_run, relaxation, scan_columns, slip_truth
 from underfoot.trials.simulator.walk import SENSORS, Defects, SlipTruth, walk_with_slip
+from underfoot.trials.study import condition_table
 from underfoot.trials.study import conditions as noted
 from underfoot.trials.study.boundary import alpha_beta, friction_split
 from underfoot.trials.study.edit_table import (
@@ -134,7 +135,7 @@ def test_tables_of_conditions(file_regression, tmp_path):
                     ("日本", False),
                 )
             ],
-            "delimiter": [noted.table_delimiter(x) for x in ("a,b;c;d", "a\tb", "a")],
+            "delimiter": [condition_table.table_delimiter(x) for x in ("a,b;c;d", "a\tb", "a")],
             "mass": [
                 noted.body_mass_noted(x)
                 for x in ({"mass": 70.0}, {"weight": 60.0}, {"mass": "x"}, {})

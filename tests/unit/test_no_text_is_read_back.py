@@ -38,6 +38,7 @@ FORMATS = {
     "trials/readers": "recordings",
     "trials/recording/marker_names.py": "recordings",
     "trials/statistics/linear.py": "terms of a model",
+    "trials/study/condition_table.py": "headings of users' tables",
     "trials/study/conditions.py": "headings of users' tables",
     "trials/study/model_scripts.py": "terms of a model",
 }
@@ -51,6 +52,7 @@ PATTERNS = {
     "recording/tester_calibration.py": "records of users",
     "statistics/samples.py": "labels of users",
     "study/circumstances.py": "names of files of users",
+    "study/condition_table.py": "tables of users",
     "study/conditions.py": "tables of users",
     "study/model_scripts.py": "names of columns of users",
     "study/readings.py": "tables of users",

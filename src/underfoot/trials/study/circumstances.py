@@ -8,7 +8,7 @@ import numpy as np
 from underfoot.core import DataError
 
 from ..statistics import ROUNDING, mixed_model, person_means
-from .conditions import ORDERS
+from .condition_table import ORDERS
 from .file_result import FileResult
 from .tables import Cell, TrialColumn, TrialTable, group_files, mean_and_interval, plain_columns
 

@@ -13,7 +13,8 @@ from underfoot.core.text import decode_text
 from ..readers.text import name_and_unit
 from ..recording.trial import Edit
 from ..walking.events import EditError
-from .conditions import named_file, table_columns, table_delimiter
+from .condition_table import table_columns, table_delimiter
+from .conditions import named_file
 from .file_result import LoggedEdit, StepResult
 
 NAMES = ("edits.csv", "edits.xlsx")

@@ -16,16 +16,16 @@ from ..recording.measurement import Measurement, caution
 from ..recording.protocols import Protocol
 from ..recording.tester_calibration import TesterCalibration
 from ..statistics import drift, standard_deviation
-from .conditions import (
+from .condition_table import (
     LARGEST,
     QUANTITIES,
     TableColumns,
     coded_levels,
     first_text,
     numbers_of_columns,
-    one_spelling,
     tables_of,
 )
+from .conditions import one_spelling
 from .file_result import FileResult, FileResultDraft, Sample, refer_to
 from .floor_classes import class_scheme
 

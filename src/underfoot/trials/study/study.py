@@ -17,7 +17,8 @@ from ..statistics import ordered_levels, precision
 from . import tables
 from .boundary import alpha_beta, friction_split
 from .circumstances import circumstance_table
-from .conditions import MASS, NUMBERS, ORDERS, person_condition
+from .condition_table import MASS, NUMBERS, ORDERS
+from .conditions import person_condition
 from .field_statistics import agreement_findings, curve_findings
 from .file_result import FileResult
 from .floor_classes import ClassScheme, class_scheme, cof_of_pendulum

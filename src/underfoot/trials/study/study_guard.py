@@ -17,7 +17,8 @@ from ..machines.slip_friction import UNCALIBRATED
 from ..recording.protocols import Protocol
 from ..statistics import drift, names_persons, told_apart
 from .circumstances import gone_with, run_numbers
-from .conditions import MASS, NUMBERS, ORDERS, PERSON, person_condition, plain_spelling
+from .condition_table import MASS, NUMBERS, ORDERS
+from .conditions import PERSON, person_condition, plain_spelling
 from .file_result import REFUSED, FileResult
 from .person_measures import FORCE, HEIGHT
 from .readings import NO_CHECKS, NO_ZERO

@@ -13,7 +13,8 @@ from underfoot.core.remark import Message, join_lines
 from .. import statistics
 from ..recording.measurement import MEAN_OF_STEPS
 from ..walking.gait_context import PERCENT
-from .conditions import NUMBERS, person_condition
+from .condition_table import NUMBERS
+from .conditions import person_condition
 from .file_result import FileResult
 
 Cell = str | float | int | None
