@@ -13,7 +13,7 @@ from underfoot.trials.recording.plates import finished_plate
 from underfoot.trials.simulator.folder import relaxation
 from underfoot.trials.statistics import intraclass_correlation
 from underfoot.trials.statistics.logistic import _FLIPS, _flipped_p
-from underfoot.trials.study.study_guard import _bodies_measured
+from underfoot.trials.study.body_doubts import bodies_measured
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -67,7 +67,7 @@ def test_another_person_shows_in_more_than_three_in_ten_distances_of_markers(mov
         SimpleNamespace(file=f"{k}.c3d", body=body, conditions={"person": "S1"})
         for k, body in enumerate(bodies)
     ]
-    doubts = list(_bodies_measured(cast(Any, files), "person"))
+    doubts = list(bodies_measured(cast(Any, files), "person"))
     assert [one.files for one in doubts] == [("5.c3d",)] * told
 
 

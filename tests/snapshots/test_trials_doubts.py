@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.study import body_doubts
 from underfoot.trials.study import study_guard as guard
+from underfoot.trials.study.doubt import Doubt, doubt_table
 from underfoot.trials.study.file_result import FileResult, Number, StepResult
 from underfoot.trials.study.person_measures import FORCE, HEIGHT
-from underfoot.trials.study.study_guard import Doubt, doubt_table, guarded_files
+from underfoot.trials.study.study_guard import guarded_files
 
 WALK, TESTER = protocol("level_walking"), protocol("en_iso_13287")
 
@@ -139,7 +141,7 @@ def test_what_a_person_keeps():
     def doubts(key, first, second):
         files = [file("a", person="A", **{key: first}), file("b", person="A", **{key: second}),
                  file("c", person="B", **{key: 1.0})]  # fmt: skip
-        return told(guard._bodies_noted(files, "person"))
+        return told(body_doubts.bodies_noted(files, "person"))
 
     assert not doubts("body mass", 70.0, 73.4)
     assert "body mass of A is noted as 70, 73.6" in doubts("body mass", 70.0, 73.6)[0]
@@ -161,7 +163,7 @@ def bodies(change, scatter=0.001, measure="A to B (m)", count=6, more=()):
             if p == 0 and n == count - 1:
                 own = dict.fromkeys(names, 1.0 + change)
             files.append(file(f"p{p} {n}", body=own, person=f"P{p}"))
-    return told(guard._bodies_measured(files, "person"))
+    return told(body_doubts.bodies_measured(files, "person"))
 
 
 def test_a_recording_that_shows_another_body():

@@ -7,6 +7,7 @@ import pytest
 
 from snapshot import held
 from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.study import body_doubts
 from underfoot.trials.study import study_guard as guard
 from underfoot.trials.study.file_result import FileResult, Number, StepResult
 from underfoot.trials.study.person_measures import FORCE, HEIGHT
@@ -134,7 +135,7 @@ def test_bodies_are_one_up_to_their_scatter(file_regression):
             widest = [
                 shift
                 for shift in np.arange(0.0, 0.03, 0.0005)
-                if list(guard._one_body(pair(shift, first, second, three=three), "person"))
+                if list(body_doubts.one_body(pair(shift, first, second, three=three), "person"))
             ]
             told[f"{first} and {second}, {'three' if three else 'two'}"] = (
                 len(widest), max(widest, default=None)

@@ -34,11 +34,12 @@ from underfoot.trials.study.circumstances import (
     run_numbers,
     walking_speed,
 )
+from underfoot.trials.study.doubt import doubt_table
 from underfoot.trials.study.file_result import FileResult, FileResultDraft
 from underfoot.trials.study.folder import FolderAnalysis
 from underfoot.trials.study.methods import methods_paragraphs
 from underfoot.trials.study.study import study_of
-from underfoot.trials.study.study_guard import doubt_table, guarded_files, study_doubts
+from underfoot.trials.study.study_guard import guarded_files, study_doubts
 
 protocol = cache(protocols.protocol)
 STUDIES = {

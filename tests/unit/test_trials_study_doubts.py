@@ -7,12 +7,12 @@ from underfoot.core import InputError
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.statistics import drift
 from underfoot.trials.study import analyse_folder
+from underfoot.trials.study.body_doubts import one_body
 from underfoot.trials.study.conditions import conditions_of
 from underfoot.trials.study.file_result import FileResult, Number, StepResult
 from underfoot.trials.study.person_measures import FORCE, HEIGHT
 from underfoot.trials.study.study import study_of
 from underfoot.trials.study.study_guard import (
-    _one_body,
     _same_in_another_order,
     _sides_as_persons,
     guarded_files,
@@ -170,7 +170,7 @@ def test_one_body_of_a_few_persons_is_told_and_two_bodies_are_not(persons, measu
 
     def share(**how):
         studies = (small_study(persons, measures, trials, seed, **how) for seed in range(60))
-        return np.mean([any(_one_body(files, "subject")) for files in studies])
+        return np.mean([any(one_body(files, "subject")) for files in studies])
 
     assert share(twins=True) >= least
     assert share() + share(plates=True) <= 1 / 60 + 1e-9

@@ -21,13 +21,14 @@ from ..recording.trial import Edit, Trial, file_checksum, join_trials
 from ..walking.body_weight import body_mass
 from ..walking.events import EditError
 from .conditions import body_mass_noted, person_condition, profile_of, study_folder
+from .doubt import Doubt, doubt_table
 from .edit_table import edits_of
 from .file_result import REFUSED, FileResult, FileResultDraft
 from .methods import methods_paragraphs
 from .readings import reading_results
 from .steps import STEP_KINDS, analysed_trial, check_ramp
 from .study import TrialStudy, study_of
-from .study_guard import Doubt, doubt_table, guarded_files, study_doubts
+from .study_guard import guarded_files, study_doubts
 from .tables import TrialTable, curve_table, edit_table, file_table, measurement_table, step_tables
 
 _CODE = "9"  # raised when what a file gives changes, so that stored results are made again

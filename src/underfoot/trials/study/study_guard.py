@@ -2,11 +2,9 @@
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from itertools import combinations
-from math import gamma
-from statistics import median
 from typing import Any
 
 import numpy as np
@@ -16,35 +14,21 @@ from underfoot.core.remark import Message
 from ..machines.slip_friction import UNCALIBRATED
 from ..recording.protocols import Protocol
 from ..statistics import drift, names_persons, told_apart
+from .body_doubts import SCATTERS, bodies_measured, bodies_noted, one_body
 from .circumstances import gone_with, run_numbers
-from .condition_table import MASS, NUMBERS, ORDERS
+from .condition_table import NUMBERS, ORDERS
 from .conditions import PERSON, person_condition, plain_spelling
+from .doubt import Doubt, names_of
 from .file_result import REFUSED, FileResult
-from .person_measures import FORCE, HEIGHT
 from .readings import NO_CHECKS, NO_ZERO
-from .tables import TrialTable, group_files
+from .tables import group_files
 
-_BODY = {
-    **dict.fromkeys(MASS, 0.05), "height": 0.02, "body height": 0.02, "sex": 0.0, "gender": 0.0
-}  # fmt: skip
-"""Conditions that a person keeps, and how far they may differ (relative)."""
 _JUDGED, _UNLIKE = 8, 0.3  # trials needed; ln of RCOF over the person's others; assumed
-_MEASURED = {FORCE: "mean force in stance", HEIGHT: "height of the highest marker"}
-_LEAST, _SCATTERS = 0.02, 6.0
-_LARGEST = {FORCE: 0.10, HEIGHT: 0.04, "": 0.05}
-"""A body is another's from six times the scatter within the study's persons, but at least 2 %, and
-from these shares on whatever the scatter (relative; "" distances of markers); assumed."""
 _NAMED = 6  # files that a reason names
 _STEP = ("contact", "peak_force")  # what tells one step from all others
 _TIMES, _ALIKE, _CORRELATED, _NOISE = 0.004, 0.004, 0.6, 120
 """Two steps are one: stance time (s), forces over their peak (rms; steps of one person differ by
 0.02 and more), correlation of the second differences of so many samples (by chance 0.09)."""
-_SAME, _COUNTED, _ODDS, _CHANCE = 0.002, 3, 100.0, 0.01
-_APART = {FORCE: 0.12, HEIGHT: 0.04, "": 0.04}
-"""Scatter of a body's measures that is the least, and that between persons (relative; "" distances
-of markers); distances count as so many measures at most, for they grow together; likelihood of one
-body over that of two from which it is told, and chance that two of the study's persons have so
-much; assumed."""
 _SIDE = re.compile(
     r"(.*[^\W_])([ _-]?)(l|r|left|right|li|re|links|rechts|g|d|gauche|droite)", re.IGNORECASE
 )
@@ -54,22 +38,6 @@ _PLATES = {"rcof": 0.08, "peak_force": 0.04}
 feet of one person may differ beyond them, who meet the same plates in the same order; assumed."""
 _MACHINES = ("machine", "tribometer", "device", "tester", "instrument", "gerät", "maschine")
 _MOST = 0.5  # share of the files from which a condition counts as meant for all
-
-
-@dataclass(frozen=True, slots=True)
-class Doubt:
-    """One doubt about a study: what, the files it is about, and whether they are out.
-
-    Files of an ``out`` doubt take no part in means and tests.
-    """
-
-    message: Message
-    files: tuple[str, ...]
-    out: bool = False
-
-    def __str__(self) -> str:
-        shown = ", ".join(self.files[:4]) + (" ..." if len(self.files) > 4 else "")
-        return f"{self.message} ({shown}){'; left out' if self.out else ''}"
 
 
 def guarded_files(
@@ -195,9 +163,9 @@ def study_doubts(files: Sequence[FileResult], protocol: Protocol) -> list[Doubt]
     if any(result.steps for result in usable):
         doubts += [*_circumstances(usable, person), *_plates_apart(usable)]
     if person:
-        doubts += [*_one_body(usable, person), *_sides_as_persons(usable, person)]
+        doubts += [*one_body(usable, person), *_sides_as_persons(usable, person)]
         doubts += [*_levels_exchanged(usable, person), *_trials_mislabelled(usable, person)]
-        doubts += [*_bodies_noted(usable, person), *_bodies_measured(usable, person)]
+        doubts += [*bodies_noted(usable, person), *bodies_measured(usable, person)]
         doubts += [*_crowded_levels(usable, person), *_unlike_trials(usable, person)]
     if protocol.kind == "slip_tester":
         doubts += [*_repeats(usable, protocol), *_drifts(usable, protocol)]
@@ -206,23 +174,8 @@ def study_doubts(files: Sequence[FileResult], protocol: Protocol) -> list[Doubt]
     return doubts
 
 
-def doubt_table(doubts: Sequence[Doubt]) -> TrialTable | None:
-    """Return the doubts as a table, a row each, or None where there is none."""
-    if not doubts:
-        return None
-    rows = tuple(
-        (d.message, "yes" if d.out else "", len(d.files), ", ".join(d.files)) for d in doubts
-    )
-    heads = ("doubt", "left out of means and tests", "number", "files")
-    return TrialTable.of("doubts", "Read this first: doubts about the study's files", heads, rows)
-
-
 def _noted_conditions(result: FileResult) -> dict[str, Any]:
     return {k: v for k, v in result.conditions.items() if k not in NUMBERS}
-
-
-def _names(files: Sequence[FileResult]) -> tuple[str, ...]:
-    return tuple(file.file for file in files)
 
 
 def _factors(files: Sequence[FileResult]) -> dict[str, list[FileResult]]:
@@ -237,7 +190,7 @@ def _factors(files: Sequence[FileResult]) -> dict[str, list[FileResult]]:
 
 def _incomplete(files: Sequence[FileResult]) -> Iterator[Doubt]:
     for key, having in _factors(files).items():
-        named = set(_names(having))
+        named = set(names_of(having))
         lacking = [file for file in files if file.file not in named]
         if not lacking:
             continue
@@ -248,7 +201,7 @@ def _incomplete(files: Sequence[FileResult]) -> Iterator[Doubt]:
                 count=len(having),
                 all=len(files),
             )
-            yield Doubt(words, _names(lacking), True)
+            yield Doubt(words, names_of(lacking), True)
         else:
             words = Message(
                 '"{key}" is noted for {count} of {all} files only: no factor',
@@ -256,7 +209,7 @@ def _incomplete(files: Sequence[FileResult]) -> Iterator[Doubt]:
                 count=len(having),
                 all=len(files),
             )
-            yield Doubt(words, _names(having))
+            yield Doubt(words, names_of(having))
 
 
 def _numbers_lacking(files: Sequence[FileResult]) -> Iterator[Doubt]:
@@ -271,7 +224,7 @@ def _numbers_lacking(files: Sequence[FileResult]) -> Iterator[Doubt]:
                 count=having,
                 all=len(files),
             )
-            yield Doubt(words, _names(lacking))
+            yield Doubt(words, names_of(lacking))
 
 
 def _crowded_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
@@ -302,7 +255,7 @@ def _crowded_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]
                     usual=usual[crowd[0]],
                 )
                 named = [o for o in having if str(o.conditions[person]) == who]
-                yield Doubt(words, _names([o for o in named if o.conditions[key] == crowd[0]]))
+                yield Doubt(words, names_of([o for o in named if o.conditions[key] == crowd[0]]))
 
 
 def _unlike_trials(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
@@ -317,7 +270,7 @@ def _unlike_trials(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
             left[own] -= np.median(left[own])
     if len(having) < _JUDGED:
         return
-    limit = max(_SCATTERS * 1.4826 * float(np.median(np.abs(left))), _UNLIKE)
+    limit = max(SCATTERS * 1.4826 * float(np.median(np.abs(left))), _UNLIKE)
     for result, away in zip(having, left, strict=True):
         if abs(away) > limit:
             words = Message(
@@ -350,7 +303,7 @@ def _near_names(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
                         usual=usual,
                         usual_count=m,
                     )
-                    yield Doubt(words, _names([o for o in having if o.conditions[key] == rare]))
+                    yield Doubt(words, names_of([o for o in having if o.conditions[key] == rare]))
 
 
 def _one_slip(a: str, b: str) -> bool:
@@ -381,7 +334,7 @@ def _words_exchanged(files: Sequence[FileResult]) -> Iterator[Doubt]:
                 second=second,
                 second_count=len(both[1]),
             )
-            yield Doubt(words, _names(min(both, key=len)))
+            yield Doubt(words, names_of(min(both, key=len)))
 
 
 def _same_in_another_order(first: str, second: str) -> bool:
@@ -450,7 +403,7 @@ def _circumstances(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
                     low=low,
                     high=high,
                 )
-            yield Doubt(words, _names([o for o in having if o.conditions[key] in (low, high)]))
+            yield Doubt(words, names_of([o for o in having if o.conditions[key] in (low, high)]))
 
 
 def _sides_as_persons(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
@@ -483,62 +436,6 @@ def _sides_as_persons(files: Sequence[FileResult], person: str) -> Iterator[Doub
         yield Doubt(words, ("all",))
 
 
-def _one_body(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
-    """Two persons with one body: weight, height and distances of markers agree as repeats do."""
-    bodies: dict[str, list[Mapping[str, float]]] = {
-        who: [result.body for result in results if result.body]
-        for (who,), results in group_files(files, (person,)).items()
-    }
-    usual = {who: {name: median([b[name] for b in results if name in b]) for name in results[0]}
-             for who, results in bodies.items() if results}  # fmt: skip
-    names = dict.fromkeys(name for body in usual.values() for name in body)
-    within: dict[str, float] = {}
-    for name in names:
-        values = [np.log(body[name]) for body in usual.values() if body.get(name, 0.0) > 0.0]
-        off = [
-            np.log(b[name] / usual[who][name]) * (len(results) / (len(results) - 1.0)) ** 0.5
-            for who, results in bodies.items()
-            for b in results
-            if len(results) > 1 and b.get(name, 0.0) > 0.0 and usual[who].get(name, 0.0) > 0.0
-        ]
-        if len(off) < 3 or len(values) < 2:
-            continue
-        scatter = max(1.4826 * float(np.median(np.abs(off))), _SAME)
-        # distances on a plate of markers are those of everybody who wears it; of two persons none
-        # can be told from these, and all of them count as one
-        if len(values) == 2 or float(np.ptp(values)) > 4.0 * scatter:
-            within[name] = scatter
-    pairs = list(combinations(sorted(usual), 2))
-    counted = _COUNTED if len(pairs) > 1 else 1
-    for one, other in pairs:
-        shared = [n for n in within if n in usual[one] and n in usual[other]]
-        evidence: dict[str, list[tuple[float, float]]] = defaultdict(list)
-        for name in shared:
-            apart = float(np.log(usual[one][name] / usual[other][name]))
-            share = 1.0 / len(bodies[one]) + 1.0 / len(bodies[other])
-            same = _SAME**2 + share * within[name] ** 2
-            differ = same + 2.0 * _APART[_kind(name)] ** 2
-            most = 0.5 * float(np.log(differ / same))
-            evidence[_kind(name)].append((most, 0.5 * apart**2 * (1.0 / same - 1.0 / differ)))
-        if not evidence:
-            continue
-        counts = [min(len(results), counted) for results in evidence.values()]
-        means = [np.mean(results, axis=0) for results in evidence.values()]
-        most, lost = np.sum([n * mean for n, mean in zip(counts, means, strict=True)], axis=0)
-        # chi-square of two bodies below 2 lost, by its density at 0, which is the highest
-        half = 0.5 * sum(counts)
-        chance = float(np.exp(-most) * lost**half / gamma(half + 1.0))
-        if most - lost > np.log(_ODDS) and chance * len(pairs) < _CHANCE:
-            words = Message(
-                "{who} and {other} have one body: {count} measures of it agree as "
-                "those of one person's trials do; one person under two names?",
-                who=one,
-                other=other,
-                count=len(shared),
-            )
-            yield Doubt(words, _names([f for f in files if str(f.conditions.get(person)) == other]))
-
-
 def _levels_exchanged(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """A person whose difference of two levels is that of all others with its sign turned."""
     for key, having in _compared_conditions(files, person).items():
@@ -559,7 +456,7 @@ def _levels_exchanged(files: Sequence[FileResult], person: str) -> Iterator[Doub
                     continue
                 mean, spread = float(np.mean(others)), float(np.std(others, ddof=1))
                 turned = abs(difference + mean) < 3.0 * spread < 0.75 * abs(mean)
-                if turned and abs(difference - mean) > _SCATTERS * spread:
+                if turned and abs(difference - mean) > SCATTERS * spread:
                     words = Message(
                         '{who} has "{first}" and "{second}" ({key}) the other way round '
                         "than all others: labels exchanged?",
@@ -570,7 +467,7 @@ def _levels_exchanged(files: Sequence[FileResult], person: str) -> Iterator[Doub
                     )
                     named = [o for o in having if str(o.conditions.get(person)) == who]
                     yield Doubt(
-                        words, _names([o for o in named if o.conditions[key] in (first, second)])
+                        words, names_of([o for o in named if o.conditions[key] in (first, second)])
                     )
 
 
@@ -590,7 +487,7 @@ def _trials_mislabelled(files: Sequence[FileResult], person: str) -> Iterator[Do
             for result in results:
                 value = np.log(result.main["rcof"])
                 same = [np.log(o.main["rcof"]) for o in results if o is not result]
-                if len(same) < 2 or abs(value - np.mean(same)) < _SCATTERS * scatter:
+                if len(same) < 2 or abs(value - np.mean(same)) < SCATTERS * scatter:
                     continue
                 for (other, label), those in cells.items():
                     logs = [np.log(o.main["rcof"]) for o in those]
@@ -620,87 +517,7 @@ def _single_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
                     level=level,
                     usual=usual,
                 )
-                yield Doubt(words, _names([o for o in having if o.conditions[key] == level]))
-
-
-def _bodies_noted(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
-    for (who,), results in group_files(files, (person,)).items():
-        for key, limit in _BODY.items():
-            noted = {result.conditions[key] for result in results if key in result.conditions}
-            numbers = [value for value in noted if isinstance(value, float)]
-            apart = len(numbers) > 1 and max(numbers) > (1.0 + limit) * min(numbers)
-            if apart or (len(noted) > 1 and not numbers):
-                listed = ", ".join(f"{v:g}" if isinstance(v, float) else v for v in sorted(noted))
-                words = Message(
-                    "{key} of {who} is noted as {values}", key=key, who=who, values=listed
-                )
-                yield Doubt(words, _names(results))
-
-
-def _bodies_measured(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
-    """A recording that shows another body than the person's other recordings."""
-    measured = {
-        who: [(result.file, result.body) for result in results if result.body]
-        for (who,), results in group_files(files, (person,)).items()
-    }
-    away: dict[tuple[str, str], dict[str, float]] = {}
-    for who, results in measured.items():
-        for file, body in results:
-            others = [other for name, other in results if name != file]
-            middles = {name: _middle(others, name) for name in body}
-            away[who, file] = {n: body[n] / middle - 1.0 for n, middle in middles.items() if middle}
-    limits = {}
-    for kind, largest in _LARGEST.items():
-        sizes = [abs(v) for one in away.values() for name, v in one.items() if _kind(name) == kind]
-        scatter = 1.4826 * float(np.median(sizes)) if sizes else largest
-        limits[kind] = min(max(_SCATTERS * scatter, _LEAST), largest)
-    usual = {
-        who: {name: _middle([body for _, body in results], name) for name in results[0][1]}
-        for who, results in measured.items()
-        if results
-    }
-    for (who, file), one in away.items():
-        beyond = {name: value for name, value in one.items() if abs(value) > limits[_kind(name)]}
-        distances, wrong = (sum(not _kind(name) for name in part) for part in (one, beyond))
-        texts = [
-            Message("{measure} {change:+.0f} %", measure=_MEASURED[name], change=100 * v)
-            for name, v in beyond.items()
-            if name in _MEASURED
-        ]
-        if wrong > max(1, 0.3 * distances):
-            texts.append(
-                Message(
-                    "{wrong} of {distances} distances of markers", wrong=wrong, distances=distances
-                )
-            )
-        if texts:
-            words = Message(
-                "another person in the place of {who}? {texts:; } against the others{nearest}",
-                who=who,
-                texts=texts,
-                nearest=_nearest(dict(measured[who])[file], who, usual),
-            )
-            yield Doubt(words, (file,))
-
-
-def _kind(measure: str) -> str:
-    return measure if measure in _LARGEST else ""
-
-
-def _middle(bodies: Sequence[Mapping[str, float]], name: str) -> float:
-    values = [body[name] for body in bodies if name in body]
-    return median(values) if len(values) >= 2 else 0.0
-
-
-def _nearest(body: Mapping[str, float], who: str, usual: Mapping[str, Mapping[str, float]]) -> str:
-    """Return who of the others has the body, where somebody has."""
-    distances = {}
-    for other, middles in usual.items():
-        shared = [abs(body[name] / m - 1.0) for name, m in middles.items() if m and name in body]
-        if other != who and shared:
-            distances[other] = max(shared)
-    best = min(distances, key=lambda name: distances[name], default="")
-    return Message(", nearest {who}", who=best) if best and distances[best] < _LEAST else ""
+                yield Doubt(words, names_of([o for o in having if o.conditions[key] == level]))
 
 
 def _plates_apart(files: Sequence[FileResult]) -> Iterator[Doubt]:
@@ -733,7 +550,7 @@ def _plates_apart(files: Sequence[FileResult]) -> Iterator[Doubt]:
                     second=second,
                     count=count,
                 )
-                yield Doubt(words, _names(files))
+                yield Doubt(words, names_of(files))
 
 
 def _repeats(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
@@ -774,7 +591,7 @@ def _drifts(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
                 way=Message("rises") if rise > 0 else Message("falls"),
                 change=100 * abs(rise),
             )
-            yield Doubt(words, _names(results))
+            yield Doubt(words, names_of(results))
 
 
 def _not_on_record(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
