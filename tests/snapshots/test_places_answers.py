@@ -455,16 +455,16 @@ def test_numbers_of_choices(file_regression):
         }
 
     new, worn = cells_of(0.32), cells_of(0.2)
-    slips = choice._slips(told, draws, new)
-    after = choice._sum(choice._slips(told, draws, worn))
-    today = choice._sum(slips)
+    slips = cells.slips_in_cells(told, draws, new)
+    after = cells.sum_of_shares(cells.slips_in_cells(told, draws, worn))
+    today = cells.sum_of_shares(slips)
     old, ruled, _ = told.shoes
     states = {False: new, True: worn}
     rq = {floor.name: RQ for floor in told.floors}
     answers = {
         "slips": {str(key): [value.mean(), value.max()] for key, value in slips.items()},
         "steep": [
-            float(choice.slip_share(new["hall", "glycerol_90pct"].acof, r, sd, slope, draws).mean())
+            float(cells.slip_share(new["hall", "glycerol_90pct"].acof, r, sd, slope, draws).mean())
             for r, sd, slope in ((0.2, 0.03, 0.0), (0.3, 0.03, 0.0), (0.2, 0.1, 0.1))
         ],
         "left": [choice._slip_ratio(after, today), choice._slip_ratio(today, today),

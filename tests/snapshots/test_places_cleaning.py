@@ -39,7 +39,7 @@ def cleaned(monkeypatch):
     def slips(place, joint, given):
         return {key: cell.acof for key, cell in given.items()}
 
-    monkeypatch.setattr(choice, "_slips", slips)
+    monkeypatch.setattr(choice, "slips_in_cells", slips)
     monkeypatch.setattr(
         choice, "_is_oil", lambda place, shoe, fluid: fluid in ("canola_oil", "gear_oil_75w140")
     )

@@ -25,7 +25,8 @@ from underfoot.film import wedge_film
 from underfoot.friction.pair_contact import Pair
 from underfoot.friction.shoe_class import SPEED, slip_tests
 from underfoot.places.calibration import calibrated_floor, class_bounds
-from underfoot.places.choice import _count, _read_floors, choose_shoe, slip_share
+from underfoot.places.cells import slip_share
+from underfoot.places.choice import _count, _read_floors, choose_shoe
 from underfoot.places.evidence import (
     _floor_rq,
     evidence,

@@ -1,4 +1,4 @@
-"""Friction of a shoe on each floor and in each fluid of a place: solved once a sole, drawn."""
+"""Friction and slips of a shoe on each floor and in each fluid of a place, drawn."""
 
 from __future__ import annotations
 
@@ -25,10 +25,12 @@ from underfoot.friction import PairContactLaw
 from underfoot.friction.pair_contact import CONTACT_PRESSURE, TERMS, ContactTerms, Pair
 from underfoot.friction.shoe_class import SPEED, SlipTest
 from underfoot.friction.tread_error import tread_error
+from underfoot.slip import RcofPopulation, ReportG6, slip_chances
 
 from .joint import PlaceDraws
 from .place import Place, PlaceFloor, PlaceShoe
 
+MODEL = ReportG6()
 POSITIONS = 2
 """Places of a tread, half a period apart, whose film counts."""
 
@@ -183,3 +185,37 @@ def law_of_pair(case: Any) -> PairContactLaw:
     law = case.friction.build(resolve_context(case))
     assert isinstance(law, PairContactLaw)
     return law
+
+
+def slip_share(acof: Array, rcof: float, sd: float, slope: float, joint: PlaceDraws) -> Array:
+    """Return the share (count,) of steps that slip, as ``run`` has it.
+
+    Parameters:
+        acof: Draws (count,) of the available friction.
+        rcof, sd: Required friction on the level, mean and standard deviation between people.
+        slope: Of the floor, rad; the friction that a step needs there is tan(slope + atan r).
+    """
+    people = RcofPopulation(rcof, sd).on_slope(slope)
+    return slip_chances(acof, people, MODEL, joint.normal)
+
+
+def slips_in_cells(
+    place: Place, joint: PlaceDraws, cells: Mapping[tuple[str, str], Cell]
+) -> dict[tuple[str, str], Array]:
+    """Return the share of all steps that slip on each floor under each fluid, (count,)."""
+    shares = {}
+    for floor in place.floors:
+        for fluid, often in floor.fluids.items():
+            if fluid == "dry":
+                continue
+            at, steps = cells[floor.name, fluid].acof, floor.share * often
+            shares[floor.name, fluid] = sum(
+                steps * task.share * slip_share(at, task.rcof, place.rcof_sd, floor.slope, joint)
+                for task in place.tasks
+            )
+    return shares
+
+
+def sum_of_shares(shares: Mapping[tuple[str, str], Array]) -> Array:
+    """Return the sum of shares in the order of names, whatever that of floors in the file."""
+    return np.sum([shares[key] for key in sorted(shares)], axis=0)

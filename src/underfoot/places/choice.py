@@ -40,15 +40,22 @@ from underfoot.friction.pair_contact import (
     UnexpectedReading,
 )
 from underfoot.friction.shoe_class import slip_tests
-from underfoot.slip import RcofPopulation, ReportG6, mean_of_draws, slip_chances
+from underfoot.slip import mean_of_draws
 
 from .calibration import learn_floor
-from .cells import Cell, PlaceSolver, law_of_pair, tested_cof
+from .cells import (
+    MODEL,
+    Cell,
+    PlaceSolver,
+    law_of_pair,
+    slips_in_cells,
+    sum_of_shares,
+    tested_cof,
+)
 from .joint import CofReading, PlaceDraws, interval
 from .machines import FLUIDS, Machine, machines
 from .place import Place, PlaceFloor, PlaceShoe, fluid_name, same_shoe
 
-MODEL = ReportG6()
 DECIDED = 0.75
 """Chance of being best from which a shoe is called the best."""
 UNLIKELY = 0.05
@@ -384,18 +391,6 @@ def _monthly(shoe: PlaceShoe) -> str:
     return "" if not shoe.price or not shoe.months else f"{shoe.price / shoe.months:.2g}"
 
 
-def slip_share(acof: Array, rcof: float, sd: float, slope: float, joint: PlaceDraws) -> Array:
-    """Return the share (count,) of steps that slip, as ``run`` has it.
-
-    Parameters:
-        acof: Draws (count,) of the available friction.
-        rcof, sd: Required friction on the level, mean and standard deviation between people.
-        slope: Of the floor, rad; the friction that a step needs there is tan(slope + atan r).
-    """
-    people = RcofPopulation(rcof, sd).on_slope(slope)
-    return slip_chances(acof, people, MODEL, joint.normal)
-
-
 @threads_limited(1)
 def choose_shoe(
     place: Place, *, seed: int = 0, quick: bool = True, progress: Progress = silent
@@ -439,19 +434,19 @@ def choose_shoe(
             step(Message("{shoe}, worn", shoe=shoe.name) if worn else shoe.name)
             states[shoe.name][worn] = solver.cells(shoe, place.floors, worn)
         new = states[shoe.name][False]
-        shares[shoe.name] = _slips(place, joint, new)
+        shares[shoe.name] = slips_in_cells(place, joint, new)
         for (floor_named, fluid), cell in states[shoe.name][shoe.worn_region is not None].items():
             ends = interval(cell.acof)
             cofs.append((shoe.name, floor_named, fluid_name(fluid), *ends, cell.film_share))
         if True in states[shoe.name]:
-            worn_slips = _slips(place, joint, states[shoe.name][True])
-            worn_rate[shoe.name] = _sum(worn_slips)
+            worn_slips = slips_in_cells(place, joint, states[shoe.name][True])
+            worn_rate[shoe.name] = sum_of_shares(worn_slips)
             shares[shoe.name] = (
                 worn_slips  # a ruler tells of the shoe of today
                 if shoe.worn_region
                 else {key: 0.5 * (x + worn_slips[key]) for key, x in shares[shoe.name].items()}
             )
-    rates = {name: _sum(each) for name, each in shares.items()}
+    rates = {name: sum_of_shares(each) for name, each in shares.items()}
     matrix = np.array([rates[shoe.name] for shoe in place.shoes])
     lowest = matrix <= matrix.min(axis=0) * (1 + 1e-9)
     best = (lowest / lowest.sum(axis=0)).mean(axis=1)
@@ -473,7 +468,7 @@ def choose_shoe(
         other = min(others, key=lambda each: float(rates[each.shoe.name].mean())).shoe.name
         name = Message("{other} instead of {present}", other=other, present=present.name)
         levers.append(_lever(name, rates[other], today))
-    new = _sum(_slips(place, joint, states[present.name][False]))
+    new = sum_of_shares(slips_in_cells(place, joint, states[present.name][False]))
     smooth = [
         floor
         for floor in place.floors
@@ -497,7 +492,7 @@ def choose_shoe(
         if len(smooth) < len(place.floors):
             floors = [floor.name for floor in smooth]
             name = Message("floors of clay quarry tile (Rq 9 um) ({floors})", floors=floors)
-        levers.append(_lever(name, _sum(_slips(place, joint, tiled)), new))
+        levers.append(_lever(name, sum_of_shares(slips_in_cells(place, joint, tiled)), new))
     levers += _cleaning(place, solver, present, states[present.name][False], shares[present.name])
     levers = sorted(
         (lever for lever in levers if lever.does_something),
@@ -531,11 +526,11 @@ def _cleaning(
 ) -> list[Lever]:
     """Return what cleaning leaves: each fluid on half the steps; oil washed off, the floor wet."""
     joint, levers = solver.joint, []
-    today = _sum(shares)
+    today = sum_of_shares(shares)
     for fluid in place.fluids():
         halved = {key: (0.5 if key[1] == fluid else 1.0) * x for key, x in shares.items()}
         name = Message("{fluid} wiped up sooner, on half the steps", fluid=fluid_name(fluid))
-        levers.append(_lever(name, _sum(halved), today))
+        levers.append(_lever(name, sum_of_shares(halved), today))
     oily = [fluid for fluid in place.fluids() if _is_oil(place, shoe, fluid)]
     if oily:
         washed = {key: cell for key, cell in new.items() if key[1] == WASHED}
@@ -551,7 +546,7 @@ def _cleaning(
             "{fluids} washed off with {washed}, the floor left wet",
             fluids=[*map(fluid_name, oily)], washed=WASHED,
         )  # fmt: skip
-        after, before = (_sum(_slips(place, joint, each)) for each in (cells, new))
+        after, before = (sum_of_shares(slips_in_cells(place, joint, each)) for each in (cells, new))
         levers.append(_lever(name, after, before))
     return levers
 
@@ -622,28 +617,6 @@ def _read_floors(
     return found
 
 
-def _slips(
-    place: Place, joint: PlaceDraws, cells: Mapping[tuple[str, str], Cell]
-) -> dict[tuple[str, str], Array]:
-    """Return the share of all steps that slip on each floor under each fluid, (count,)."""
-    shares = {}
-    for floor in place.floors:
-        for fluid, often in floor.fluids.items():
-            if fluid == "dry":
-                continue
-            at, steps = cells[floor.name, fluid].acof, floor.share * often
-            shares[floor.name, fluid] = sum(
-                steps * task.share * slip_share(at, task.rcof, place.rcof_sd, floor.slope, joint)
-                for task in place.tasks
-            )
-    return shares
-
-
-def _sum(shares: Mapping[tuple[str, str], Array]) -> Array:
-    # in the order of names: the sum does not hang on the order of floors in the file
-    return np.sum([shares[key] for key in sorted(shares)], axis=0)
-
-
 def _slip_ratio(after: Array, before: Array) -> tuple[float, float, float]:
     """Return the ratio of the mean slips between the 2.5 and 97.5 % of the ratio of the draws.
 
@@ -688,7 +661,7 @@ def _replacement_time(
     """
     if worn is None:
         return ""
-    new = _sum(_slips(place, joint, states[False]))
+    new = sum_of_shares(slips_in_cells(place, joint, states[False]))
     if shoe.worn_region is not None:
         left = _slip_ratio(worn, new)
         if left[1] > TWICE:
