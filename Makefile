@@ -14,7 +14,7 @@ AGAIN := --last-failed --last-failed-no-failures none
 unexport PYTHONDONTWRITEBYTECODE
 SEED := $(or $(SEED),$(shell od -An -N4 -tu4 /dev/urandom | tr -d " "))
 
-.PHONY: run app check test test-quick test-slow test-studies fuzz fuzz-files mutants ways neighbours test-install chromium bundle bundle-check bench validate docs manual clean help
+.PHONY: run app check test test-quick test-costly test-slow test-studies fuzz fuzz-files mutants ways neighbours test-install chromium bundle bundle-check bench validate docs manual clean help
 
 run: $(READY)  ## the main job: a worn work shoe on a floor with glycerol
 	$(BIN)/underfoot run examples/work_shoe_untreaded_glycerol.toml --out out/work_shoe_untreaded_glycerol --overwrite
@@ -28,10 +28,13 @@ check: $(READY)  ## ruff, pyright, import-linter (a minute)
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 
-test: check test-quick  ## static checks, then every test that is not slow (minutes)
+test: check test-quick  ## static checks, then every quick test (minutes)
 
-test-quick: $(READY)  ## every test that is not slow
-	$(PYTEST) worksteal -n 2 -m "not slow and not study"
+test-quick: $(READY)  ## every test that is neither costly nor slow
+	$(PYTEST) worksteal -n 2 -m "not costly and not slow and not study"
+
+test-costly: $(READY)  ## those of a second, by which no planted fault dies alone (tests/costly.txt)
+	$(PYTEST) worksteal -n 2 -m "costly and not slow and not study"
 
 fuzz: $(READY)  ## Hypothesis with examples that no run had before; SEED=N repeats a run
 	@echo "make fuzz SEED=$(SEED) repeats this run; a find becomes an @example of its test"

@@ -7,6 +7,7 @@ import shutil
 import signal
 import sys
 import time
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -14,8 +15,9 @@ from hypothesis import settings
 from positive_bounds import bounds_below_zero
 
 CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "chrome")
-QUICK = "not slow and not study"
-LONG = 3  # s of CPU, above which a test should be marked slow
+QUICK = "not costly and not slow and not study"
+LONG = 3  # s of CPU, above which a test should be costly or slow
+COSTLY = Path(__file__).with_name("costly.txt")
 CPU = pytest.StashKey[list[float]]()
 UNTIL = float(os.environ.get("SLOW_TESTS_UNTIL") or "inf")  # Unix time
 OUT_OF_TIME = "slow, and the time of this run is over (make test-slow runs all)"
@@ -38,11 +40,27 @@ def no_page_has_a_positive_quantity_below_zero(tmp_path_factory):
     assert not found, found
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config, items):
-    """Where a run may leave slow tests out, each version of the code begins with other files."""
+    """Marks the costly ones; where a run may leave slow ones out, each version has other files."""
+    costly = costly_tests()
+    for item in items:
+        if item.nodeid.partition("[")[0] in costly:
+            item.add_marker("costly")
     seed = os.environ.get("SLOW_TESTS_SEED", "")
     if seed and config.option.markexpr.startswith("slow"):
         items.sort(key=lambda item: hashlib.sha256(f"{seed} {item.path.name}".encode()).digest())
+
+
+def costly_tests():
+    """Return the names (file::test) of the tests of ``costly.txt``."""
+    names, file = set(), ""
+    for line in COSTLY.read_text(encoding="utf-8").splitlines():
+        if line.startswith("tests/"):
+            file = line
+        elif not line.startswith("#"):
+            names.add(f"{file}::{line.strip()}")
+    return names
 
 
 def pytest_configure():
@@ -113,7 +131,7 @@ def pytest_terminal_summary(terminalreporter, config):
         reverse=True,
     )
     if long and long[0][0] > LONG:
-        terminalreporter.section(f"more than {LONG} s of CPU without the mark slow")
+        terminalreporter.section(f"more than {LONG} s of CPU, neither costly nor slow")
         for cpu, name in long:
             if cpu > LONG:
                 terminalreporter.line(f"{cpu:5.0f} s {name}")

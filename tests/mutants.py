@@ -56,7 +56,7 @@ ALIVE = Path(__file__).with_name("mutants_alive.toml")
 STATED = "tests/snapshots/test_stated_numbers.py"
 """Holds what lines at import state, without running them."""
 NO_TESTS_OF_CODE = ("docs", "install")
-QUICK = "not slow and not study and not browser"
+QUICK = "not costly and not slow and not study and not browser"
 CACHE = "__pycache__"
 IMPORTED = re.compile(r"(?m)^(?:from|import) (\w+)")
 PROCESSES = ("subprocess", "multiprocessing", "Popen", "processes=", "workers=")

@@ -287,3 +287,16 @@ def test_names_of_functions_parameters_and_fields_say_what_they_are():
         if name.strip("_") in SAY_NOTHING
     ]
     assert not empty
+
+
+def test_each_costly_test_is_there_once():
+    lines = (REPOSITORY / "tests/costly.txt").read_text("utf-8").splitlines()
+    file, text, seen = "", "", set()
+    for line in lines:
+        if line.startswith("tests/"):
+            file = line
+            text = (REPOSITORY / file).read_text("utf-8")
+        elif line.startswith("  "):
+            assert f"def {line.strip()}(" in text, (file, line)
+            assert (file, line) not in seen, (file, line)
+            seen.add((file, line))

@@ -15,7 +15,7 @@ RUN = "import mutants; mutants.LEAST_TIME, mutants.LIBRARIES = 1, (); mutants.ma
 FILES = {
     "pyproject.toml": (
         '[tool.pytest.ini_options]\npythonpath = ["src"]\n'
-        'markers = ["slow: s", "study: s", "browser: b"]\n'
+        'markers = ["costly: c", "slow: s", "study: s", "browser: b"]\n'
     ),
     "src/underfoot/__init__.py": "",
     "src/underfoot/bare/__init__.py": "",
