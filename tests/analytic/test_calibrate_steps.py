@@ -19,7 +19,7 @@ from underfoot.calibrate.pair_readings import (
 from underfoot.calibrate.stribeck_curve import StribeckCurve
 from underfoot.calibrate.trial_laws import stribeck_law_from_fit
 from underfoot.case import load
-from underfoot.core import DataError, InputError
+from underfoot.core import DataError, InputError, SourcedValue
 from underfoot.friction import packaged_pair_draws
 from underfoot.trials.machines.stribeck_fit import stribeck_fit
 
@@ -114,11 +114,10 @@ def test_the_ends_of_a_band_stand_in_the_rows_of_a_curve():
 def hold_of(force):
     """Return a compression test whose force (N) over the hold is known; its modulus is 6 MPa."""
     time = np.arange(1, 4001) * 0.01
-    quantity = SimpleNamespace
     reading = SimpleNamespace(
         hold=(time, force(time)),
-        force_2_percent=quantity(value=10.0),
-        peak_force=quantity(value=70.0),
+        force_2_percent=SourcedValue(10.0),
+        peak_force=SourcedValue(70.0),
     )
     moduli = SimpleNamespace(short_time_modulus=6e6)
     return cast(Any, SimpleNamespace(reading=reading, moduli=moduli, factor=1.5, name="made up"))

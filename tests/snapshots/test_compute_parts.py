@@ -377,7 +377,7 @@ def test_what_is_said_of_numbers(file_regression):
     said["risk"] = slip_probability(case, worlds["film"]["cof"])
     said["nothing"] = undetermined_numbers(case, Status.NOT_CONVERGED)
     contact: Any = SimpleNamespace(fluid_load=3.0, fluid_pressure=np.array([1.0, 5.0]))
-    sensor: Any = SimpleNamespace(load=SourcedValue(None), peak_pressure=SourcedValue(4.0))
+    sensor: Any = SimpleNamespace(load=SourcedValue(3.0), peak_pressure=SourcedValue(4.0))
     said["readings"] = readings(contact, 0.2, sensor)
     population = slip_population(case)
     said["population"] = replace(population, histories=population.histories[:1])

@@ -220,8 +220,8 @@ def a_compound():
                   )  # fmt: skip
     tests = [
         fake(name=f"test {k}", reading=fake(
-            time=time, force=k * time, force_2_percent=fake(value=k), peak_force=fake(value=2 * k),
-            final_force=fake(value=None if k == 1 else 0.7)))
+            time=time, force=k * time, force_2_percent=SourcedValue(k),
+            peak_force=SourcedValue(2 * k), final_force=SourcedValue(0.7)))
         for k in (1, 2)
     ]  # fmt: skip
     return fake(sweep=sweep, fit=fake(spectrum=spectrum, band=band), spectrum=spectrum,
@@ -379,9 +379,9 @@ def test_friction_of_fluids_over_speed(file_regression, count):
 
 
 def test_shoes_of_a_place(file_regression):
-    shoes = [fake(best=best, shoe=fake(name=name), slips=fake(value=value, interval=ends))
+    shoes = [fake(best=best, shoe=fake(name=name), slips=SourcedValue(value, interval=ends))
              for name, best, value, ends in (("one", 0.7, 0.1, (0.05, 0.2)),
-                                             ("two", 0.2, None, (0.0, 0.9)),
+                                             ("two", 0.2, 0.4, (0.0, 0.9)),
                                              ("three", 0.1, 0.3, (0.2, 0.5)))]  # fmt: skip
     held(file_regression, figure_lines(places.slips_figure(fake(shoes=shoes))))
 

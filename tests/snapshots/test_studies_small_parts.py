@@ -12,7 +12,7 @@ from test_studies_answers import drawn
 from small_pads import pad
 from snapshot import held
 from underfoot.compute.prepare import prepare_case
-from underfoot.core import Status
+from underfoot.core import SourcedValue, Status
 from underfoot.friction import packaged_pair_draws
 from underfoot.friction.propagation import normal_draws
 from underfoot.sole_contact.lug_edges import EdgedLaw
@@ -151,9 +151,9 @@ def test_a_tread_is_solved_once_for_all_states_and_its_law_takes_each(monkeypatc
     def friction(one: Any, context: Any, law: Any, sole: Any, contact: Any) -> Any:
         assert (one, context, sole, contact) == ("case", "context", "sole", "contact")
         dewetting = getattr(law, "dewetting", None)
-        cof = None if dewetting is None else 0.1 * dewetting
+        cof = 0.0 if dewetting is None else 0.1 * dewetting
         return SimpleNamespace(
-            sums=SimpleNamespace(cof=SimpleNamespace(value=cof)),
+            sums=SimpleNamespace(cof=SourcedValue(cof)),
             sampled=SimpleNamespace(cof=np.array([1.0, dewetting or 9.0])),
         )
 

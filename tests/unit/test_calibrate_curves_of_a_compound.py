@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from underfoot.calibrate.compound import Compound, _beside, _relaxation_curve, relaxation_of
+from underfoot.core import SourcedValue
 from underfoot.material.curves import RelaxationCurve
 
 
@@ -31,8 +32,8 @@ def test_a_hold_is_read_from_its_first_instant_to_its_last_against_its_own_peak(
     low, peak = 5.0, 105.0
     test: Any = SimpleNamespace(
         reading=SimpleNamespace(
-            hold=(time, low + (peak - low) * share), force_2_percent=SimpleNamespace(value=low),
-            peak_force=SimpleNamespace(value=peak),
+            hold=(time, low + (peak - low) * share), force_2_percent=SourcedValue(low),
+            peak_force=SourcedValue(peak),
         ),
         moduli=SimpleNamespace(short_time_modulus=6e6), factor=1.5, name="made",
     )  # fmt: skip

@@ -11,7 +11,7 @@ from underfoot.case import load
 from underfoot.compute import contact_friction as module
 from underfoot.compute import micro_contact as micro
 from underfoot.compute.contact_friction import _on_squares
-from underfoot.core import InputError
+from underfoot.core import InputError, SourcedValue
 from underfoot.film.regimes import fluid_load_share
 from underfoot.fluid.temperature import sliding_heat, viscosity_slope
 from underfoot.friction import FrictionParts
@@ -118,7 +118,7 @@ def test_a_rough_contact_is_told_at_the_mean_pressure_over_the_load(monkeypatch)
 
     def sourced(quantity, *at):
         asked.append((quantity, *at))
-        return SimpleNamespace(value=2.0, uncertainty=0.4)
+        return SourcedValue(2.0, uncertainty=0.4)
 
     table = SimpleNamespace(
         pressure=np.array([1e5, 2e5]), speed=np.array([0.1, 0.5]),

@@ -473,15 +473,15 @@ def test_effects_stand_in_their_order_with_their_intervals():
 
 def test_shoes_of_a_place_stand_by_their_chance_to_be_the_best():
     shoes = [
-        fake(best=best, slips=fake(value=value, interval=ends), shoe=fake(name=name))
+        fake(best=best, slips=SourcedValue(value, interval=ends), shoe=fake(name=name))
         for name, best, value, ends in (
-            ("a", 0.7, 0.1, (0.05, 0.2)), ("b", 0.1, None, (0.3, 0.6)), ("c", 0.2, 0.3, (0.2, 0.4)),
+            ("a", 0.7, 0.1, (0.05, 0.2)), ("b", 0.1, 0.45, (0.3, 0.6)), ("c", 0.2, 0.3, (0.2, 0.4)),
         )
     ]  # fmt: skip
     (axes,) = places.slips_figure(cast(Any, fake(shoes=shoes))).axes
     labels = [text.get_text() for text in axes.get_yticklabels()]
     assert labels == ["b (10 %)", "c (20 %)", "a (70 %)"]
-    assert xy(axes.lines[0]) == (pytest.approx([0, 30, 10]), pytest.approx([0, 1, 2]))
+    assert xy(axes.lines[0]) == (pytest.approx([45, 30, 10]), pytest.approx([0, 1, 2]))
     reach = [(low[0], high[0]) for low, high in cast(Any, axes.collections[0]).get_segments()]
     assert reach == [pytest.approx(ends) for ends in ((30, 60), (20, 40), (5, 20))]
     assert axes.get_xlim() == (0, 100)

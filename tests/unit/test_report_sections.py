@@ -10,6 +10,7 @@ import pytest
 import xarray
 
 from underfoot.case import load
+from underfoot.core import SourcedValue
 from underfoot.core.fields import from_xarray
 from underfoot.core.page import PageSection
 from underfoot.core.presentation import Presentable, Table
@@ -79,15 +80,15 @@ def test_relaxation_shifts_and_holds_are_drawn_with_their_fits():
 
     tests = [
         fake(name=f"test {k}", reading=fake(
-            time=time, force=k * time, force_2_percent=fake(value=k), peak_force=fake(value=2 * k),
-            final_force=fake(value=None)))
+            time=time, force=k * time, force_2_percent=SourcedValue(k),
+            peak_force=SourcedValue(2 * k), final_force=SourcedValue(0.7)))
         for k in (1, 2)
     ]  # fmt: skip
     (axes,) = compound._hold(fake(compressions=tests)).axes
     curves = [line for line in axes.lines if str(line.get_label()).startswith("test")]
     assert [xy(line)[1].tolist() for line in curves] == [time.tolist(), (2 * time).tolist()]
     levels = [line.get_ydata()[0] for line in cast(Any, axes.lines) if line not in curves]
-    assert levels == [1, 2, 0, 2, 4, 0]
+    assert levels == [1, 2, 0.7, 2, 4, 0.7]
 
 
 @pytest.mark.parametrize("present", ["sweep", "relaxation", "shifts", "compressions"])

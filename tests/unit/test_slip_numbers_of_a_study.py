@@ -216,7 +216,9 @@ def test_a_sensor_reads_nothing_before_the_first_and_after_the_last_instant(monk
 
     def pulse(name, channel, at):
         given.append((name, channel))
-        return fake(peak=fake(value=1e3 * (1 + len(given))), duration=fake(value=len(given) / 10))
+        return fake(
+            peak=SourcedValue(1e3 * (1 + len(given))), duration=SourcedValue(len(given) / 10)
+        )
 
     monkeypatch.setattr(observation, "pressure_pulse", pulse)
     monkeypatch.setattr(observation, "BASELINE_SD", 0.0)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from underfoot.core import DataError, InputError
+from underfoot.core.remark import Message
 from underfoot.trials import (
     Channel,
     Marker,
@@ -322,3 +323,10 @@ def test_the_vertical_axis_comes_from_what_there_is(walk):
     assert "differ most" in axes_of(bare).up_from
     assert axes_of(Trial("x")).up_from.startswith("assumed")
     assert axes_of(walk, vertical="-y").up @ np.array([0.0, -1.0, 0.0]) == 1.0
+
+
+def test_what_was_not_determined_is_no_number():
+    missing = Measurement.not_estimated("acof", Message("the shoe is not loaded"))
+    with pytest.raises(DataError, match="acof: was not determined: the shoe is not loaded"):
+        float(missing)
+    assert float(Measurement("n", 3, uncertainty=0.1)) == 3.0

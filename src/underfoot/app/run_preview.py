@@ -71,7 +71,7 @@ def of_run(solved: Continuation, seen: Preview, whole: Mapping[str, SourcedValue
     case = solved.case.replace(seen.changes)
     load, values, errors = case.motion.normal_force, dict(seen.values), dict(seen.errors)
     for number, (name, usual) in enumerate(USUAL.items()):
-        run, before, after = whole[name].value or 0.0, solved.values[name], seen.values[name]
+        run, before, after = float(whole[name]), solved.values[name], seen.values[name]
         limits = (math.inf, math.inf)
         if name == "fluid_load":
             limits = (solved.case.motion.normal_force, load)

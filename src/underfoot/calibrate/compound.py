@@ -435,7 +435,7 @@ def compound_from_files(
 def relaxation_of(test: Compression) -> RelaxationCurve:
     """Return Young's modulus over the time since the peak, at even steps of its logarithm."""
     time, force = test.reading.hold
-    low = test.reading.force_2_percent.value or 0.0
+    low = float(test.reading.force_2_percent)
     peak = test.reading.peak_force.value or 1.0
     modulus = test.moduli.short_time_modulus * (force - low) / (peak - low) / test.factor
     inside = np.unique(np.geomspace(1, time.size - 1, READINGS).astype(int))

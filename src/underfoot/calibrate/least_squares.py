@@ -53,7 +53,7 @@ class Calibration:
     @property
     def values(self) -> dict[str, float]:
         """The numbers alone."""
-        return {name: float(given.value or 0.0) for name, given in self.parameters.items()}
+        return {name: float(given) for name, given in self.parameters.items()}
 
     @property
     def mean_absolute_error(self) -> float:

@@ -89,7 +89,7 @@ def fluid_points(
     tau, left = friction.tau_hydro, friction.cof_asymptote
     fitted = tau is not None and left is not None
     if tau is not None and left is not None:
-        cof = stribeck_cof(speed, boundary, tau.value or 0.0, left.value or 0.0)
+        cof = stribeck_cof(speed, boundary, float(tau), float(left))
     else:
         cof = np.full(speed.shape, boundary)
     return CofPoints(

@@ -64,7 +64,7 @@ def assumptions(case: Case) -> list[Remark]:
                 Remark(
                     "interface",
                     "effective_rq = {value} ({source}; {note})",
-                    value=Amount(rq.value or 0.0, rq.unit),
+                    value=Amount(float(rq), rq.unit),
                     source=rq.source,
                     note=rq.note,
                 )

@@ -386,8 +386,8 @@ class MeanFilmSharingOption(_Mechanism):
                 remedy="Give it, or choose friction.model = asperity_ehl",
             )
         effect = MeanFilmSharing(
-            radius=pin.sourced("method.reduced_radius", "m").value or 0.0,
-            normal_force=pin.sourced("method.normal_force", "N").value or 0.0,
+            radius=float(pin.sourced("method.reduced_radius", "m")),
+            normal_force=float(pin.sourced("method.normal_force", "N")),
             effective_modulus=2 * context.plane_strain_modulus,
             rq=rq,
             stiffness=context.plane_strain_modulus,

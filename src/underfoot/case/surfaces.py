@@ -144,7 +144,7 @@ class SurfaceRoughness(Section):
         scan = self.scan()
         assert scan is not None
         assert self.rq_or_estimate is not None
-        scanned = scan.values["rq"].value or 0.0
+        scanned = float(scan.values["rq"])
         return scan.density(wavenumber) * (self.rq_or_estimate / scanned) ** 2
 
     def directions(self, wavenumber: ArrayLike) -> tuple[Array, Array] | None:
@@ -230,7 +230,7 @@ class Interface(Option):
         return self.rq_deviation(shoe, floor) or 0.0
 
     def _too_rough(self, case: CaseView, where: str) -> Iterator[InputError]:
-        rq = self.rq(case.shoe.roughness, case.floor.roughness).value or 0.0
+        rq = float(self.rq(case.shoe.roughness, case.floor.roughness))
         waves, what = self.longest_wave, f"an Rq of {display(rq, 'm')}"
         steepest = STEEPEST * waves / (2 * math.pi)
         own = {
@@ -340,7 +340,7 @@ class CompositeInterface(Interface):
             given = (roughness.rq_uncertainty or 0.0) / rq if rq else drawn
             parts.append(square * given)
             scanned += square * (roughness.sha256 is not None)
-        whole = self.rq(shoe, floor).value or 0.0
+        whole = float(self.rq(shoe, floor))
         return math.hypot(*parts, (whole**2 - scanned) * factor) / whole**2 if whole else 0.0
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:

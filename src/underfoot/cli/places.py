@@ -56,7 +56,7 @@ def machine(
             known = to_si(rq, "m", where="--rq")
             span = known, known
         elif scan is not None:
-            known = float(read_scan(scan).values["rq"].value or 0.0)
+            known = float(read_scan(scan).values["rq"])
             span = known, known
     shared.answer(name, lambda _: predicted_reading(name, span, fluid=fluid))
 

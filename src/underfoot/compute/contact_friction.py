@@ -108,7 +108,7 @@ def contact_friction(
     on_cells = {"spacing": sole.spacing, "wet": at.wet, **at.areas}
     source = f"{plain.name} law: {plain.source}"
     exact = cof(parts, *pressures, **on_cells, source=source)
-    of_film, whole = (number.value or 0.0 for number in (exact.cof_viscous, exact.cof))
+    of_film, whole = (float(number) for number in (exact.cof_viscous, exact.cof))
     film_shear = film_warmth(
         case, context, whole, contact, film_share=of_film / (whole or 1.0), samples=samples
     )

@@ -82,8 +82,8 @@ class Recorder:
             read = scan_reading(
                 self.case, self.sole, state, viscosity=self.viscosity, offsets=READ_OFFSETS
             )
-            self.sensor_load.append(read.load.value or 0.0)
-            self.sensor_peak.append(read.peak_pressure.value or 0.0)
+            self.sensor_load.append(float(read.load))
+            self.sensor_peak.append(float(read.peak_pressure))
             self._last_read = state.time
         if self.case.sensor.array is not None:
             # single precision: the frames of a whole history are kept

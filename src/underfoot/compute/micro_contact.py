@@ -77,6 +77,6 @@ def micro_contact(parts: Prepared, contact: SoleContact) -> MicroContact | None:
     for quantity, error in (("mean_gap", GAP_ERROR), ("flow_factor_along", FLOW_ERROR)):
         value = table.sourced(quantity, *at)
         mean = (value.uncertainty or 0.0) / math.sqrt(float(table.realizations.min()))
-        spreads.append(math.hypot(mean / max(value.value or 0.0, 1e-30), rq, error))
+        spreads.append(math.hypot(mean / max(float(value), 1e-30), rq, error))
     deviation = contact_deviation(table, *at, parts.context)
     return MicroContact(table, pressure, speed, deviation, spreads[0], min(spreads[1], 1.0))

@@ -377,7 +377,7 @@ def _sole_key(case: Case, *parts: str) -> str:
 def readings(contact: SoleContact, cof: float, sensor: SensorReading) -> dict[str, float]:
     """Return the numbers that errors of grid and steps in time are estimated for."""
     values = (
-        *(cof, contact.fluid_load, sensor.load.value or 0.0),
-        *(float(contact.fluid_pressure.max()), sensor.peak_pressure.value or 0.0),
+        *(cof, contact.fluid_load, float(sensor.load)),
+        *(float(contact.fluid_pressure.max()), float(sensor.peak_pressure)),
     )
     return dict(zip(GRID_NAMES, values, strict=True))

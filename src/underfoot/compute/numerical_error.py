@@ -282,7 +282,7 @@ def _cells(parts: Prepared, columns: int) -> Message:
 def _read(parts: Prepared, contact: SoleContact) -> dict[str, float]:
     friction = friction_sums(parts.local_law, contact, parts.case.motion.speed)
     sensor = scan_reading(parts.case, parts.sole, contact, viscosity=parts.viscosity)
-    return readings(contact, friction.cof.value or 0.0, sensor)
+    return readings(contact, float(friction.cof), sensor)
 
 
 def _wider(

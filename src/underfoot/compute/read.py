@@ -73,7 +73,7 @@ def readings(
     if sampled is not None and isinstance(errors, NumericalErrors):
         cof, name = friction.cof, numbers.sole_name(case)
         error = errors.deviation("cof")
-        sampled = with_numerical_error(sampled, error, cof=cof.value or 0.0, sole=name)
+        sampled = with_numerical_error(sampled, error, cof=float(cof), sole=name)
         friction = replace(friction, cof=sampled.sourced("cof", cof))
     sensor = solution.sensor
     values, risk = numbers.scalars(case, contact, friction, sensor, sampled, parts.slip_model)
@@ -92,7 +92,7 @@ def readings(
     drainage = None
     if contact.fluid_load > FILM_MATTERS * contact.normal_force:
         drainage = lug_drainage(parts.sole, contact.fluid_pressure, contact.film_thickness)
-    share = (values["fluid_load"].value or 0.0) / contact.normal_force
+    share = float(values["fluid_load"]) / contact.normal_force
     remarks = {
         "drainage": drainage.advice() if drainage else NOTHING,
         "overload": numbers.overload_words(overload),

@@ -169,7 +169,7 @@ def stated_spreads(case: Case) -> tuple[StatedSpread, ...]:
     spreads = []
     value, deviation = 0.0, 0.0
     if viscosity is not None:
-        value, deviation = viscosity.value or 0.0, viscosity.uncertainty or 0.0
+        value, deviation = float(viscosity), viscosity.uncertainty or 0.0
     if fluid is not None and deviation > EXACT_VISCOSITY * value:
         ends, offset = _ends(value, deviation)
         about = {"family": fluid.chemistry, "pool_depth": fluid.pool_depth}

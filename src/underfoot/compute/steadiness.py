@@ -63,13 +63,11 @@ def settling_time(contact: SoleContact) -> float:
 
 def with_steadiness(values: Mapping[str, SourcedValue]) -> dict[str, SourcedValue]:
     """Return the numbers of a result without ``LATER`` where it is steady."""
-    numbers = {name: scalar.value or 0.0 for name, scalar in values.items()}
-    if "later_cof" not in numbers:
+    if "later_cof" not in values:
         return dict(values)
-    cof, film, whole = (numbers[name] for name in ("cof", "fluid_load", "normal_force"))
-    moves = abs(numbers["later_cof"] - cof) > WITHIN * cof or abs(
-        numbers["later_fluid_load"] - film
-    ) > _least(film, whole)
+    names = ("cof", "later_cof", "fluid_load", "later_fluid_load", "normal_force")
+    cof, later, film, later_film, whole = (float(values[name]) for name in names)
+    moves = abs(later - cof) > WITHIN * cof or abs(later_film - film) > _least(film, whole)
     return {name: value for name, value in values.items() if moves or name not in LATER}
 
 

@@ -266,9 +266,9 @@ def steadiness(scalars: Mapping[str, SourcedValue]) -> tuple[Message, ...]:
             ),
         )
     slide = scalars.get("steady_slide")
-    if slide is None or (slide.value or 0.0) <= LONGEST_SLIDE:
+    if slide is None or float(slide) <= LONGEST_SLIDE:
         return ()
-    way = quantity_text(slide.value or 0.0, "m")
+    way = quantity_text(float(slide), "m")
     return (
         Message("Sliding is steady only after {way}, further than a slip tester slides.", way=way),
     )

@@ -41,7 +41,7 @@ class SourcedValue:
     def __float__(self) -> float:
         if self.value is None:
             raise DataError(Message("was not determined: {reason}", reason=self.reason))
-        return self.value
+        return float(self.value)
 
     def __str__(self) -> str:
         if self.value is None:

@@ -53,7 +53,7 @@ def friction_left(measured: Sequence[BoundaryFriction]) -> SourcedValue:
     asymptotes = [
         m.cof_asymptote
         for m in measured
-        if m.cof_asymptote is not None and (m.cof_asymptote.value or 0.0) >= AT_BOUND
+        if m.cof_asymptote is not None and float(m.cof_asymptote) >= AT_BOUND
     ]
     if not asymptotes:
         raise InputError(

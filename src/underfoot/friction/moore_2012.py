@@ -112,7 +112,7 @@ class StribeckLaw(UncertainInputs):
         if friction.cof_boundary.assumed:
             level = Message("COF_BL of {fluid} is assumed.", fluid=friction.fluid)
             notes.append(Message.plain(friction.cof_boundary.note or level))
-        at_bound = (friction.cof_asymptote.value or 0.0) < AT_BOUND
+        at_bound = float(friction.cof_asymptote) < AT_BOUND
         if cof_hysteresis is None and at_bound and others:
             cof_hysteresis = friction_left(others)
             notes.append(
@@ -167,7 +167,7 @@ def stribeck_law_at(
     fitted = [m for m in measured if m.tau_hydro is not None and m.cof_asymptote is not None]
     decay = viscous_decay(fitted)
     between = boundary_friction_at(viscosity, fitted, fluid=fluid)
-    tau = (decay.value or 0.0) / viscosity
+    tau = float(decay) / viscosity
     left = friction_left(fitted)
     return StribeckLaw(
         cof_boundary=between.cof_boundary,

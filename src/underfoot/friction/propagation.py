@@ -86,7 +86,7 @@ def propagate_spread(
         centre[name] = quantity.value
     generator = np.random.default_rng(seed)
     drawn = dict(joint or {}) | {
-        name: _draws(quantity.value or 0.0, quantity.uncertainty, samples, generator)
+        name: _draws(centre[name], quantity.uncertainty, samples, generator)
         for name, quantity in inputs.items()
         if quantity.uncertainty and name not in (joint or {})
     }

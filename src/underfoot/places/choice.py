@@ -255,7 +255,7 @@ class ShoeChoice(Presentable):
             (
                 each.shoe.name,
                 probability_text(each.best) if len(self.shoes) > 1 else "",
-                probability_text(each.slips.value or 0.0),
+                probability_text(float(each.slips)),
                 interval_text("slip_probability", each.slips),
                 "" if each.shoe.price is None else f"{each.shoe.price:g}",
                 _monthly(each.shoe),

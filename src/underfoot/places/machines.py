@@ -387,7 +387,7 @@ def machine_of(entry: Entry) -> Machine:
         return low, high
 
     def number(path: str, unit: str = "1") -> float:
-        return float(entry.sourced(path, unit).value or 0.0)
+        return float(entry.sourced(path, unit))
 
     def learned() -> Learned | None:
         if "learned.ln_factor" not in entry.values:

@@ -111,7 +111,7 @@ class Comparison(Presentable):
         if len({result.provenance.case_hash for result in self.results}) == 1:
             return (Message("The cases are the same; the results differ by grid or version only."),)
         first, second = self.ranking[:2]
-        lead = (first.cof.value or 0.0) - (second.cof.value or 0.0)
+        lead = float(first.cof) - float(second.cof)
         both: dict[str, Any] = {
             "better": self.label(first.letter),
             "other": self.label(second.letter),
@@ -146,7 +146,7 @@ class Comparison(Presentable):
                     "(probability {chance} that the first has more).",
                     **both, apart=apart,
                 ),
-                *self._telling(self.order, second.cof.value or 0.0),
+                *self._telling(self.order, float(second.cof)),
             )  # fmt: skip
         if len(self.results) > 2:
             order = Message(

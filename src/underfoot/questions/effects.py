@@ -86,7 +86,7 @@ class _Friction:
 
     def film_left(self, start: _Level) -> float:
         """Return the load on the film as a share of that of ``start``, at most 1."""
-        load = self.fluid_load.value or 0.0
+        load = float(self.fluid_load)
         return min(1.0, load / start.fluid_load) if start.fluid_load else 1.0
 
     def spread(self, beyond: _Spread, share: float) -> _Friction:
@@ -99,7 +99,7 @@ class _Friction:
 
     def moved(self, start: _Level, unchanged: _Level) -> _Friction:
         """Return a changed friction as from ``unchanged`` instead of ``start``."""
-        cof, load = self.cof.value or 0.0, self.fluid_load.value or 0.0
+        cof, load = float(self.cof), float(self.fluid_load)
         left = self.film_left(start)
         more, more_load = (left * (b - a) for a, b in zip(start, unchanged, strict=True))
         factor = max(1.0 + more / cof, 0.0) if cof else 1.0
@@ -116,7 +116,7 @@ class _Friction:
         slip, _ = slip_probability(variant, self.cof, self.draws)
         scalars = {"cof": self.cof, "fluid_load": self.fluid_load, "slip_probability": slip}
         before = _Friction.of(present.scalars, present.data)
-        known = [(one.cof.value or 0.0, one.cof.uncertainty, one.draws) for one in (self, before)]
+        known = [(float(one.cof), one.cof.uncertainty, one.draws) for one in (self, before)]
         higher = probability_higher(*known, shared=True)
         return ChangeEffect(change, scalars, error=error, higher=higher)
 

@@ -440,7 +440,7 @@ def _window(entry: Entry) -> str:
     if "method.averaging_end" not in entry.values:
         return ""
     begin, end = (
-        display(entry.sourced(f"method.averaging_{name}", "s").value or 0.0, "s")
+        display(float(entry.sourced(f"method.averaging_{name}", "s")), "s")
         for name in ("start", "end")
     )
     after = "the force is there" if entry.text("method.averaging_from") == "force" else "contact"
@@ -489,7 +489,7 @@ def _condition(
 
 def _sides(cof: SourcedValue) -> tuple[float, float]:
     """Return the standard deviation of ln COF below and above its value, by its interval."""
-    value = max(cof.value or 0.0, 1e-9)
+    value = max(float(cof), 1e-9)
     if cof.interval is None or cof.interval[0] <= 0:
         half = (cof.uncertainty or 0.0) / value
         return half, half

@@ -389,7 +389,7 @@ def model_risks(
                 name,
                 model.source,
                 next(iter(model.assumptions), ""),
-                risk.probability.value or 0.0,
+                float(risk.probability),
                 risk.low,
                 risk.high,
                 _needed_acof(target, acof, draws, people, model),

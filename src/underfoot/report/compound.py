@@ -89,7 +89,7 @@ def _hold(shown: Compound) -> Figure:
         reading, color = test.reading, f"C{number}"
         axes.plot(reading.time, reading.force, color, lw=1, label=test.name)
         for force in (reading.force_2_percent, reading.peak_force, reading.final_force):
-            axes.axhline(force.value or 0.0, color=color, ls=":", lw=0.9)
+            axes.axhline(float(force), color=color, ls=":", lw=0.9)
     axes.set(xlabel="Time, s", ylabel="Force, N", title="Dotted: force at 2 %, peak, end of hold")
     axes.legend(fontsize=8)
     return figure

@@ -125,7 +125,7 @@ def _slip_risk(risk: SlipRisk, figure: Figure) -> None:
     share = slip_model(risk.model).population(acof, risk.rcof.mean, risk.rcof.sd)
     axes = figure.subplots()
     axes.plot(acof, 100.0 * share, "k")
-    axes.axhline(100.0 * (risk.probability.value or 0.0), color="C1", label="this risk")
+    axes.axhline(100.0 * float(risk.probability), color="C1", label="this risk")
     if risk.low is not None and risk.high is not None:
         axes.axhspan(100.0 * risk.low, 100.0 * risk.high, color="C1", alpha=0.2)
     axes.set(xlabel="Available COF", ylabel="Probability of a slip, %", title=risk.model)

@@ -28,7 +28,7 @@ def slips_figure(choice: ShoeChoice) -> Figure:
     at = np.arange(len(shoes))
     low, high = 100 * np.array([shoe.slips.interval for shoe in shoes]).T
     axes.hlines(at, low, high, color="C0", lw=2)
-    axes.plot([100 * (shoe.slips.value or 0.0) for shoe in shoes], at, "o", color="C0")
+    axes.plot([100 * float(shoe.slips) for shoe in shoes], at, "o", color="C0")
     axes.set_yticks(at, [f"{shoe.shoe.name} ({100 * shoe.best:.0f} %)" for shoe in shoes])
     axes.set(xlim=(0, 100), xlabel="steps in a fluid that slip, %: mean, 95 % (chance of best)")
     axes.set_ylim(-0.6, len(shoes) - 0.4)

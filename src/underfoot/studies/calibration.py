@@ -227,7 +227,7 @@ def contact_profile(study: SlipStudy) -> MisfitProfile:
 
 def _published_value(name: str) -> tuple[float, float]:
     value = Catalogue.load().entry("published", "human_slips_g5").sourced(name, "m/s")
-    return value.value or 0.0, value.uncertainty or 0.0
+    return float(value), value.uncertainty or 0.0
 
 
 def treaded_speed(study: SlipStudy, sole: ReducedSole, cof: float) -> float:
@@ -242,7 +242,7 @@ def treaded_speed(study: SlipStudy, sole: ReducedSole, cof: float) -> float:
 def _other_conclusions() -> tuple[str, ...]:
     fitted = [fluid for fluid in measured_fluids(Catalogue.load()) if fluid.tau_hydro is not None]
     decay = viscous_decay(fitted)
-    value, spread = 1e3 * (decay.value or 0.0), 1.96e3 * (decay.uncertainty or 0.0)
+    value, spread = 1e3 * float(decay), 1.96e3 * (decay.uncertainty or 0.0)
     slopes, halves = precision_of_published()
     a, b = np.percentile(slopes, [2.5, 97.5]), np.percentile(halves, [2.5, 97.5])
     return (

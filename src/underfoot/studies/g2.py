@@ -276,7 +276,7 @@ def _decay(fluids: Mapping[str, BoundaryFriction]) -> dict[str, ComputedQuantity
     for friction in fitted:
         rest = viscous_decay([other for other in fitted if other is not friction])
         found[f"tau.{friction.fluid}"] = ComputedQuantity.of(
-            (rest.value or 0.0) / friction.viscosity,
+            float(rest) / friction.viscosity,
             "m/s",
             deviation=(rest.uncertainty or 0.0) / friction.viscosity,
             scale="log",
@@ -560,7 +560,7 @@ def _example_figure(
     prediction = default["glycerol_25pct"]
     speed = np.linspace(0.05, 1.0, 60)
     fluid = comparison.fluids["glycerol_25pct"]
-    boundary, spread = fluid.cof_boundary.value or 0.0, fluid.cof_boundary.uncertainty or 0.0
+    boundary, spread = float(fluid.cof_boundary), fluid.cof_boundary.uncertainty or 0.0
     layers = (
         Layer(
             "band",
@@ -639,16 +639,16 @@ def _levels_figure(fluids: Mapping[str, BoundaryFriction]) -> Figure:
     left, right = [], []
     for k, (name, label) in enumerate(LABELS.items()):
         one = fluids[name]
-        rest, error = one.cof_boundary.value or 0.0, one.cof_boundary.uncertainty or 0.0
+        rest, error = float(one.cof_boundary), one.cof_boundary.uncertainty or 0.0
         ends: dict[str, Any] = {"low": rest - error, "high": rest + error}
         left.append(Layer("bars", k, rest, **ends, colour=COLOURS[k], width=0.7))
         if one.tau_hydro is not None:
-            tau, spread = one.tau_hydro.value or 0.0, one.tau_hydro.uncertainty or 0.0
+            tau, spread = float(one.tau_hydro), one.tau_hydro.uncertainty or 0.0
             ends = {"low": tau - spread, "high": tau + spread}
             style = {"colour": COLOURS[k], "marker": "o"}
             right.append(points(1e3 * one.viscosity, tau, label, **ends, **style))
     x = np.geomspace(0.4, 8, 50)
-    product = 1e3 * (decay.value or 0.0)
+    product = 1e3 * float(decay)
     right.append(line(x, product / x, f"viscosity × tau = {product:.2f} mPa m", colour="0.3"))
     return Figure(
         (

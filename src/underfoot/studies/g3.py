@@ -198,7 +198,7 @@ def _pair_numbers(catalogue: Catalogue, sole: str, floor: str) -> tuple[float, t
     """Return Shore A of the sole, and Ra (m) of sole and floor."""
     own = catalogue.entry("material", SOLES[sole])
     other = catalogue.entry("floor", FLOORS[floor])
-    ra = [entry.sourced("roughness.ra", "m").value or 0.0 for entry in (own, other)]
+    ra = [float(entry.sourced("roughness.ra", "m")) for entry in (own, other)]
     return float(own.leaf("shore_a").given), (ra[0], ra[1])
 
 

@@ -505,7 +505,7 @@ def depth_table(depths: Sequence[tuple[float, CaseOutcome]]) -> StudyTable:
 def printed_value(name: str, kind: str, unit: str) -> float:
     """Return what the report prints for an untreaded shoe in glycerol."""
     published = Catalogue.load().entry("published", "slip_tester_g4")
-    return published.sourced(f"{name}_{kind}_shoe_untreaded_glycerol", unit).value or 0.0
+    return float(published.sourced(f"{name}_{kind}_shoe_untreaded_glycerol", unit))
 
 
 def map_figure(readings: Sequence[GridReading]) -> Figure:

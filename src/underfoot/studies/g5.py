@@ -434,7 +434,7 @@ def _speed_pressure_figure(studies: Mapping[str, SlipStudy]) -> Figure:
         layers.append(points(seen["peak_pressure"] / 1e3, seen["peak_speed"], label, **style))
         pressure = published.sourced(f"peak_pressure_{shoe}", "Pa")
         speed = published.sourced(f"peak_slipping_speed_over_sensors_{shoe}", "m/s")
-        x, y = (pressure.value or 0.0) / 1e3, speed.value or 0.0
+        x, y = float(pressure) / 1e3, float(speed)
         dx, dy = (pressure.uncertainty or 0.0) / 1e3, speed.uncertainty or 0.0
         style = {"colour": PRINTED, "marker": "s" if shoe == "treaded" else "D"}
         label = f"{shoe}, report (mean ± sd)"

@@ -189,10 +189,8 @@ def pin_strength() -> tuple[float, float]:
     friction = next(fluid for fluid in measured_fluids(catalogue) if fluid.fluid == FLUID)
     assert friction.tau_hydro is not None
     assert friction.cof_asymptote is not None
-    left = float(friction.cof_asymptote.value or 0.0)
-    cof = float(
-        stribeck_cof(0.3, friction.cof_boundary.value or 0.0, friction.tau_hydro.value or 0.0, left)
-    )
+    left = float(friction.cof_asymptote)
+    cof = float(stribeck_cof(0.3, float(friction.cof_boundary), float(friction.tau_hydro), left))
     rules = sole_case(60.0, "stribeck")
     factor, longest, hurst = (
         float(rules.value(f"interface.{name}"))

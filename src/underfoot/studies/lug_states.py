@@ -51,7 +51,7 @@ def states_scores(stresses: Sequence[float] = STRESSES) -> list[StatesScore]:
             law = replace(law, dewetting=stress)
         friction = contact_friction(parts.case, parts.context, law, parts.sole, contact)
         assert friction.sampled is not None
-        return np.append(friction.sums.cof.value or 0.0, friction.sampled.cof)
+        return np.append(float(friction.sums.cof), friction.sampled.cof)
 
     scores = []
     for stress in stresses:

@@ -101,7 +101,7 @@ class Scan(Presentable):
             np.interp(np.log(q), np.log(known.wavenumber), np.log(np.maximum(known.density, 1e-99)))
         )
         low, high = known.reliable
-        falling = -2 * (1 + (self.hurst.value or 0.0))
+        falling = -2 * (1 + float(self.hurst))
         longer = self.ends[0] * (1.0 if self.roll_off else (q / low) ** falling)
         shorter = self.ends[1] * (q / high) ** falling
         return np.where(q < low, longer, np.where(q > high, shorter, inside))
@@ -119,7 +119,7 @@ class Scan(Presentable):
         numbers = Message(
             "Rq {rq}, Ra {ra} after a cut-off of {cutoff}; waves from {shortest} to {longest} "
             "were measured.",
-            rq=Amount(rq.value or 0.0, "m"), ra=Amount(self.values["ra"].value or 0.0, "m"),
+            rq=Amount(float(rq), "m"), ra=Amount(float(self.values["ra"]), "m"),
             cutoff=Amount(self.cutoff, "m"), shortest=waves[1], longest=waves[0],
         )  # fmt: skip
         if self.texture is None or not self.texture.has_lay:
@@ -138,7 +138,7 @@ class Scan(Presentable):
 
     def cautions(self) -> tuple[Message, ...]:
         """Return why the heights are none of a floor or sole, and which waves they lack."""
-        return (*height_cautions(self.values["rq"].value or 0.0), *self.doubts)
+        return (*height_cautions(float(self.values["rq"])), *self.doubts)
 
     def table(self) -> Table:
         """Return the numbers with their standard errors."""
@@ -297,7 +297,7 @@ def read_scan(
             name: replace(value, source=f"{value.source}; {said}", assumed=True)
             for name, value in values.items()
         }
-    unlikely = unlikely_height(values["rq"].value or 0.0)
+    unlikely = unlikely_height(float(values["rq"]))
     if strict and unlikely:
         raise DataError(
             unlikely,

@@ -140,7 +140,7 @@ def _pulses(
         pulse = pressure_pulse(
             f"{i}{j}", Channel(noisy, "Pa", PRESSURE_RATE, start=float(times[0])), 0.0
         )
-        peaks[i, j] = pulse.peak.value or 0.0
+        peaks[i, j] = float(pulse.peak)
         durations[i, j] = pulse.duration
     top = np.unravel_index(int(peaks.argmax()), peaks.shape)
     return (

@@ -106,9 +106,9 @@ def compression(
     travel between F_0.02 and F_0 is that recorded.
     """
     moduli = compression_moduli(
-        reading.force_2_percent.value or 0.0,
-        reading.peak_force.value or 0.0,
-        reading.final_force.value or 0.0,
+        float(reading.force_2_percent),
+        float(reading.peak_force),
+        float(reading.final_force),
         thickness,
         area,
         travel=reading.peak_displacement / thickness - 0.02,

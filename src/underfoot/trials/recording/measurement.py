@@ -7,7 +7,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from underfoot.core import InputError
+from underfoot.core import DataError, InputError
 from underfoot.core.deprecation import renamed_member
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.remark import NOTHING, Amount, Message
@@ -103,6 +103,12 @@ class Measurement(Presentable):
                 object.__setattr__(self, "reason", Message("uncertainty not estimated"))
         elif not self.uncertainty >= 0 or not math.isfinite(self.uncertainty):
             raise ValueError(f"{self.name}: uncertainty {self.uncertainty} is not allowed")
+
+    def __float__(self) -> float:
+        if self.value is None:
+            reason = Message("was not determined: {reason}", reason=self.reason)
+            raise DataError(reason, where=self.name)
+        return float(self.value)
 
     @classmethod
     def not_estimated(

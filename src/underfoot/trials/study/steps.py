@@ -167,7 +167,7 @@ def _relaxation(
     draft.note(reading.peak_displacement / (2.0 * thickness), "1", fact="compression")
     time, force = reading.hold
     log = np.unique(np.geomspace(1, len(time) - 1, 300).astype(int))
-    draft.curve("hold", time=time[log], force=force[log], final=reading.final_force.value or 0.0)
+    draft.curve("hold", time=time[log], force=force[log], final=float(reading.final_force))
 
 
 def _moduli(
@@ -184,7 +184,7 @@ def _moduli(
     test = compression(reading, thickness, area, name)
     meant = {"modulus": Message("of the pair, apparent (Eq. 13 to 16)")}
     forces = reading.force_2_percent, reading.peak_force, reading.final_force
-    low, peak, final = ((force.value or 0.0, force.uncertainty or 0.0) for force in forces)
+    low, peak, final = ((float(force), force.uncertainty or 0.0) for force in forces)
     for time, (high, noise) in (("short", peak), ("long", final)):
         spread = math.hypot(noise, low[1]) / (high - low[0])
         stiffness = getattr(test.moduli, f"{time}_time_stiffness")
@@ -447,7 +447,7 @@ def _sensors(walk: _Walk, slip: Slip, walking: np.ndarray) -> None:
             draft.add(f"sensor {name}", passage.speed)
             draft.add(f"sensor {name}", passage.lateral)
             if passage.speed.value is not None and pulse.peak.value is not None:
-                speeds = {"irss": passage.speed.value, "ml": passage.lateral.value or 0.0}
+                speeds = {"irss": passage.speed.value, "ml": float(passage.lateral)}
                 facts = {"row": passage.row, "pressure": pulse.peak.value, **speeds}
                 draft.curve("sensor_rows", sensor=name, **facts)
     if pulses:

@@ -184,7 +184,7 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> TrialStudy:
         others = {k: v for k, v in by_fluid.items() if k not in (dry, blocked)}
         split = friction_split(by_fluid[dry], by_fluid[blocked], others)
         own = dict(zip(keys, pair, strict=True))
-        oiled = split.hysteresis.value or 0.0
+        oiled = float(split.hysteresis)
         parts["dry_adhesion"] += [(force - oiled, own) for force in by_fluid[dry]]
         parts["hysteresis"] += [(force, own) for force in by_fluid[blocked]]
         parts["lubricated_adhesion"] += [
@@ -204,8 +204,8 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> TrialStudy:
             rows.append((*pair, name, m.value, m.uncertainty, m.n, join_lines(m.flags)))
         for fluid, m in split.lubricated_adhesion.items():
             fluids.append(fluid)
-            dry_adhesions.append(split.adhesion.value or 0.0)
-            wet.append(m.value or 0.0)
+            dry_adhesions.append(float(split.adhesion))
+            wet.append(float(m))
     title = "Adhesion and hysteresis, Eq. 22 to 25"
     flags = TrialColumn("flags", Role.LONG)
     heads = (*condition_columns(keys), "part", "force (N)", "standard error (N)", "n", flags)
@@ -291,7 +291,7 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> TrialStudy:
             notes.append(Message("{label}: no map ({error})", label=label, error=error.what))
             continue
         load, change = mapped.load, mapped.half_spacing_change
-        place = (1e3 * (p.value or 0.0) for p in (mapped.peak_along, mapped.peak_lateral))
+        place = (1e3 * float(p) for p in (mapped.peak_along, mapped.peak_lateral))
         rows.append(
             (label, len(scans), load.value, load.uncertainty,
              tables.scale_to_heading("peak_pressure", mapped.peak.value), *place,

@@ -207,7 +207,7 @@ def required_friction(
             text = Message(
                 "the heel slides at {peak:.2f} m/s over {way:.0f} mm: the ratio is available "
                 "friction (ACOF), not required",
-                peak=slip.peak_speed.value or 0.0, way=1e3 * (slip.distance.value or 0.0),
+                peak=float(slip.peak_speed), way=1e3 * float(slip.distance),
             )  # fmt: skip
             return without(text)
     gate = definition.gate
