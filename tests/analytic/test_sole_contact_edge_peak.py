@@ -44,6 +44,17 @@ def test_a_peak_in_the_middle_is_not_marked():
     assert peak.mean == pytest.approx(peak.highest, rel=0.03)
 
 
+def test_cells_of_the_border_are_at_the_edge_and_no_others():
+    heel = Heel(length=7e-3, width=6e-3, rear_radius=0.0, outsole_thickness=0.01)
+    sole = heel_map(heel, shoe_angle=0.0, spacing=1e-3)
+    along, across = np.nonzero(sole.land)
+    for i, j in zip(along, across, strict=True):
+        pressure = np.where(sole.land, 1.0, 0.0)
+        pressure[i, j] = 2.0
+        beside = sole.land[max(i - 1, 0) : i + 2, max(j - 1, 0) : j + 2]
+        assert peak_pressure(sole, pressure).at_edge == (beside.sum() < 9)
+
+
 def test_load_on_what_rubber_cannot_bear_is_counted_with_what_cells_stand_for():
     pressure, area = np.array([[1e6, 9e6]]), np.array([[1.5, 0.5]])
     assert overloaded_share(pressure, pressure * area, 5e6) == pytest.approx(4.5 / 6.0)

@@ -106,24 +106,30 @@ EARLIER = {"a person a quarter heavier": 4e-3}
 
 
 def told(trial):
-    """Return verdict, RCOF and its ±, its moment and the slip of each step, by time."""
+    """Return verdict, RCOF and its ±, its moment, the slip and its ± of each step, by time."""
     rows = []
     for one in sorted(required_frictions(walkway_of(trial)), key=lambda each: each.stance.contact):
-        began, slid = one.stance.contact, one.slip
+        began, slid, spreads = one.stance.contact, one.slip, []
         numbers = [one.measurement.value, one.measurement.uncertainty, one.peak_time - began]
         if slid is not None:
-            numbers += [slid.distance.value, slid.peak_speed.value]
+            measured = slid.distance, slid.peak_speed, slid.start
+            numbers += [each.value for each in measured[:2]]
             numbers += [None if slid.start.value is None else slid.start.value - began]
-        rows.append(
-            (one.verdict, [np.nan if number is None else float(number) for number in numbers])
-        )
+            spreads = [each.uncertainty for each in measured]
+        rows.append((one.verdict, as_floats(numbers), as_floats(spreads)))
     return rows
+
+
+def as_floats(numbers):
+    return [np.nan if number is None else float(number) for number in numbers]
 
 
 @pytest.mark.parametrize("how", TOLD)
 def test_a_walk_told_otherwise_has_the_same_steps_and_slip(walk, how):
     own, other = told(walk), told(TOLD[how](walk))
-    assert [verdict for verdict, _ in other] == [verdict for verdict, _ in own]
-    assert sum(np.isfinite(numbers).sum() for _, numbers in own) >= 8
-    for (_, numbers), (_, again) in zip(own, other, strict=True):
+    assert [verdict for verdict, *_ in other] == [verdict for verdict, *_ in own]
+    assert sum(np.isfinite(numbers).sum() for _, numbers, _ in own) >= 8
+    for (_, numbers, spreads), (_, again, their) in zip(own, other, strict=True):
         assert again == pytest.approx(numbers, rel=1e-5, abs=EARLIER.get(how, 1e-7), nan_ok=True)
+        # noise is told of each axis of the laboratory, by as many frames
+        assert their == pytest.approx(spreads, rel=0.1, nan_ok=True)

@@ -69,7 +69,8 @@ def test_draws_of_a_design_are_those_of_its_law_one_condition_after_another():
         return Design(0, (0.5,), {}, False, False, DesignRecords(keys, records))
 
     both = design("a", "b").cof_draws([1, 0])
-    assert both is not None and both.tolist() == [0.5, 0.7, 0.1, 0.3]
+    assert both is not None
+    assert both.tolist() == [0.5, 0.7, 0.1, 0.3]
     assert design("a", "c").cof_draws([0]) is None
 
 

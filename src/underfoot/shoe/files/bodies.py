@@ -478,7 +478,7 @@ def _beside(outsole: Found, bodies: _Bodies, keep: Mask, others: Mask) -> Found:
     if telling is None:
         return outsole
     rest = bodies.low[telling].min(axis=0), bodies.high[telling].max(axis=0)
-    offset = (box[0] + box[1] - rest[0] - rest[1]) / 2
+    offset = box[0] + box[1] - rest[0] - rest[1]
     parted = [_parting(np.stack([box[0], rest[0]])[:, n], np.stack([box[1], rest[1]])[:, n])
               for n in (1, 2)]  # fmt: skip
     axis = 1 + int(np.argmax(parted))
