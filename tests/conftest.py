@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from machine import CHROMIUM, cpu_seconds
 from positive_bounds import bounds_below_zero
 
-CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "chrome")
 QUICK = "not costly and not slow and not study"
 LONG = 3  # s of CPU, above which a test should be costly or slow
 COSTLY = Path(__file__).with_name("costly.txt")
@@ -105,11 +105,6 @@ def pytest_runtest_call(item):
     answer = yield
     item.user_properties.append(("cpu", cpu_seconds() - before))
     return answer
-
-
-def cpu_seconds():
-    """Return the CPU s of this process and of those it waited for."""
-    return sum(os.times()[:4])
 
 
 def pytest_sessionfinish(session):

@@ -1,4 +1,4 @@
-"""How slow this machine is: limits of time hold for a usual one, and are longer on a slower."""
+"""What this machine has: its browser, and its speed, by which limits of time are longer."""
 
 import os
 import subprocess
@@ -8,6 +8,14 @@ from functools import cache
 IMPORTS, USUAL = "import numpy, scipy.sparse, scipy.ndimage, pydantic", 0.44
 """What a process loads first, and the CPU s of it where README's example takes 12 (``--quick``);
 where that took 27, this took 0.96."""
+
+CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "chrome")
+"""Names that a browser for the tests of pages has."""
+
+
+def cpu_seconds() -> float:
+    """Return the CPU s of this process and of those it waited for."""
+    return sum(os.times()[:4])
 
 
 @cache

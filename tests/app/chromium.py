@@ -13,7 +13,7 @@ import time
 
 import numpy as np
 
-from conftest import CHROMIUM
+from machine import CHROMIUM
 
 PATIENCE = 300
 """s after which a test gives a page up: many, for others may compute on the machine."""

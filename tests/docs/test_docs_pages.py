@@ -11,8 +11,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "docs"))
 import generated
 from pages import ROOT, agrees, blocks_of, held, numbers_compared, reader
 
-from conftest import cpu_seconds
-from machine import slowness
+from machine import cpu_seconds, slowness
 
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
 PHYSICS = [p for p in sorted((ROOT / "docs/physics").glob("*.md")) if p.stem != "index"]

@@ -102,7 +102,7 @@ def test_marches(file_regression, name):
 
 @pytest.mark.usefixtures("written")
 def test_three_terms_that_relax_alike_are_one():
-    """The same rubber by one term or by three: forces, way and each part of the energy are alike."""
+    """The same rubber by one term or by three: forces, way and energies are alike."""
     split = MicroMaterial(
         RelaxationSpectrum(0.5e6, np.array([0.05e6, 0.1e6, 0.15e6]), np.full(3, 2e-6)), 1.5e6
     )

@@ -78,8 +78,10 @@ def analyse(
     slope = {"ramp": ramp, "plate_frame": plate_frame, "equivalence": equivalence}
     settings = {key: value for key, value in slope.items() if value is not None}
     chosen = protocol_named(protocol, known).with_settings(settings)
-    if details < 0 or (processes is not None and processes < 1):
-        raise InputError("must not be negative", where="--details, --processes")
+    if details < 0:
+        raise InputError(f"{details}", where="--details", allowed="0 or more")
+    if processes is not None and processes < 1:
+        raise InputError(f"{processes}", where="--processes", allowed="1 or more")
     if out.resolve() == folder.resolve():
         raise InputError("the folder of the trials can't take the results", where="--out")
     from underfoot.core.progress import bar
