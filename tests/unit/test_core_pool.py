@@ -71,6 +71,11 @@ def test_item_that_kills_its_worker_is_found_and_the_others_are_answered():
 
 @pytest.mark.parametrize("processes", [1, 2])
 def test_error_and_cancel_end_the_work_and_the_workers(processes):
+    def workers():
+        children = psutil.Process().children()
+        return {p.pid for p in children if "spawn_main" in " ".join(p.cmdline())}
+
+    before = workers()  # of pages that tests of this process showed
     with pytest.raises(ValueError, match="number"):
         list(in_processes(wrong, [1, 2], processes))
 
@@ -79,7 +84,7 @@ def test_error_and_cancel_end_the_work_and_the_workers(processes):
 
     with pytest.raises(Cancelled):
         list(in_processes(squared, [1, 2, 3], processes, progress=stop))
-    assert not [p for p in psutil.Process().children() if "spawn_main" in " ".join(p.cmdline())]
+    assert not workers() - before
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
