@@ -155,7 +155,8 @@ def test_a_record_has_a_line_for_each_column_that_says_something():
     "given", [{"details": -1}, {"processes": 0}, {"details": -1, "processes": 2}, {"processes": -2}]
 )
 def test_no_analysis_has_fewer_than_no_details_or_than_one_process(tmp_path, given):
-    with pytest.raises(InputError, match="--details, --processes"):
+    (wrong, value), *_ = given.items()
+    with pytest.raises(InputError, match=f"--{wrong}: {value}"):
         analyse(tmp_path, protocol="level_walking", out=tmp_path / "out", **given)
 
 
