@@ -116,14 +116,13 @@ def _translate_error(
         )
     if kind in ("greater_than_equal", "less_than_equal"):
         bound = context.get("ge", context.get("le"))
-        least, most = (
-            Message("at least {least}", least=bound),
-            Message("at most {most}", most=bound),
-        )
+        low = kind.startswith("greater")
         return RangeError(
             Message("{given} is outside the range", given=given),
             where=where,
-            allowed=least if kind.startswith("greater") else most,
+            allowed=Message("at least {least}", least=bound)
+            if low
+            else Message("at most {most}", most=bound),
         )
     return InputError(
         Message("{given} can't be used here", given=repr(given)),

@@ -41,6 +41,10 @@ Turn = Annotated[float, Quantity("rad", -math.pi, math.pi)]
 Shift = Annotated[float, Quantity("m", -0.5, 0.5)]
 
 
+def _at_most(length: float, what: str) -> Message:
+    return Message("at most {most} ({what})", most=Amount(length, "m"), what=what)
+
+
 class RearProfile(Option):
     """Profile of the sole's rear."""
 
@@ -163,11 +167,7 @@ class HeelPlan(SolePlan):
                 yield RangeError(
                     f"{display(getattr(self, name), 'm')} does not fit the plan form",
                     where=f"{where}.{name}",
-                    allowed=Message(
-                        "at most {most} ({what})",
-                        most=Amount(limit, "m"),
-                        what="half of the smaller of length and width",
-                    ),
+                    allowed=_at_most(limit, "half of the smaller of length and width"),
                 )
 
 
@@ -331,11 +331,7 @@ class Lugs(TreadPattern):
                 yield RangeError(
                     f"{display(getattr(self, name), 'm')} does not fit on the lug",
                     where=f"{where}.{name}",
-                    allowed=Message(
-                        "at most {most} ({what})",
-                        most=Amount(rounding, "m"),
-                        what="the depth and half the lug width",
-                    ),
+                    allowed=_at_most(rounding, "the depth and half the lug width"),
                 )
         if self.edge_radius > 0 and self.edge_chamfer > 0:
             yield InputError(
@@ -356,11 +352,7 @@ class Lugs(TreadPattern):
             yield RangeError(
                 f"{display(cuts.depth, 'm')} is deeper than the lug",
                 where=f"{where}.depth",
-                allowed=Message(
-                    "at most {most} ({what})",
-                    most=Amount(self.depth, "m"),
-                    what="shoe.tread.depth",
-                ),
+                allowed=_at_most(self.depth, "shoe.tread.depth"),
             )
         if cuts.depth == 0.0:
             yield RangeError("0 mm is no sipe", where=f"{where}.depth", allowed="above 0 mm")
@@ -512,11 +504,7 @@ class LetteringTread(Lugs):
             yield RangeError(
                 f"{display(self.edge_radius, 'm')} does not fit on the letters' strokes",
                 where=f"{where}.edge_radius",
-                allowed=Message(
-                    "at most {most} ({what})",
-                    most=Amount(min(self.depth, stroke / 2), "m"),
-                    what="half a stroke",
-                ),
+                allowed=_at_most(min(self.depth, stroke / 2), "half a stroke"),
             )
 
 

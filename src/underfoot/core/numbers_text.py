@@ -228,6 +228,11 @@ def without_units(cells: Sequence[str], units: Mapping[int, str]) -> list[str]:
     return bare
 
 
+def column_place(file: str, column: str) -> Message:
+    """Return a column of a file as the place of an error."""
+    return Message("{file}, column {column}", file=file, column=column)
+
+
 def one_unit(units: Sequence[str], same: Callable[[str, str], bool], where: str) -> str:
     """Return the unit of a column from all places that name one (heading, row below, cells).
 

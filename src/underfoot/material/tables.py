@@ -11,6 +11,7 @@ from underfoot.core import DataError, InputError, nearest_match, text, to_si
 from underfoot.core.numbers_text import (
     NumberForm,
     column_numbers,
+    column_place,
     number_forms,
     one_unit,
     units_in_cells,
@@ -206,10 +207,7 @@ class FileTable:
         values = self.numbers(column, infinite)
         if quantity in PURE:
             return values * (0.01 if self.unit(column) == "%" else 1.0)
-        unit, where = (
-            UNITS[quantity],
-            Message("{file}, column {column}", file=self.where, column=column.name),
-        )
+        unit, where = UNITS[quantity], column_place(self.where, column.name)
         written = self.unit(column)
         if written in ("", "-"):
             raise DataError(
@@ -231,10 +229,7 @@ class FileTable:
             DataError: Neither decides, or they contradict each other.
         """
         column = self.needed("angular frequency", "frequency")
-        values, where = (
-            self.numbers(column),
-            Message("{file}, column {column}", file=self.where, column=column.name),
-        )
+        values, where = self.numbers(column), column_place(self.where, column.name)
         angular = column.quantity == "angular frequency"
         written = self.unit(column, "frequency")
         unit = written.replace(" ", "").casefold()
@@ -578,11 +573,7 @@ class _Draft:
             return quantity is None or "" in sizes or sizes[0] == sizes[1]
 
         said = (named[1], self.units[k], self.inside.get(k, ""))
-        return one_unit(
-            said,
-            same,
-            Message("{file}, column {column}", file=where, column=text.excerpt(named[0])),
-        )
+        return one_unit(said, same, column_place(where, text.excerpt(named[0])))
 
     def table(self, where: str, part: int, stated: Mapping[str, str]) -> FileTable:
         cells = list(zip(*(row for _, row in self.rows), strict=True))

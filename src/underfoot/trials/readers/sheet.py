@@ -12,7 +12,13 @@ from pathlib import Path
 import numpy as np
 
 from underfoot.core import DataError
-from underfoot.core.numbers_text import NumberForm, one_unit, units_in_cells, without_units
+from underfoot.core.numbers_text import (
+    NumberForm,
+    column_place,
+    one_unit,
+    units_in_cells,
+    without_units,
+)
 from underfoot.core.remark import Message
 from underfoot.core.text import decode_text
 
@@ -157,9 +163,7 @@ def _sheet(
     for i, name in enumerate(text.unique_names([name for name, _ in pairs], "column", notes)):
         below = written[i] if i < len(written) else ""
         said = (pairs[i][1], below, inside.get(i, ""))
-        units[name] = one_unit(
-            said, _same, Message("{file}, column {column}", file=where, column=name)
-        )
+        units[name] = one_unit(said, _same, column_place(where, name))
         if values is not None:
             numbers[name] = text.measurable(values[:, i], notes)
             continue

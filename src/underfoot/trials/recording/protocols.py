@@ -79,16 +79,16 @@ class Protocol:
     method: Mapping[str, Leaf]
     rules: tuple[Rule, ...]
 
+    @property
+    def where(self) -> Message:
+        """The protocol as the place of an error."""
+        return Message("protocol {protocol}", protocol=self.name)
+
     def number(self, key: str, unit: str, default: float | None = None) -> float:
         """Return a setting in SI, or ``default`` when the protocol does not say."""
         if key not in self.method:
             if default is None:
-                raise unknown_name(
-                    "setting",
-                    key,
-                    self.method,
-                    where=Message("protocol {protocol}", protocol=self.name),
-                )
+                raise unknown_name("setting", key, self.method, where=self.where)
             return default
         return to_si(self.method[key].given, unit, where=f"protocol.{self.name}.method.{key}")
 

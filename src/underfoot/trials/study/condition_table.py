@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from underfoot.core import DataError, InputError, units
-from underfoot.core.numbers_text import NumberForm, number_forms
+from underfoot.core.numbers_text import NumberForm, column_place, number_forms
 from underfoot.core.remark import Message
 from underfoot.core.text import decode_text
 
@@ -290,7 +290,7 @@ def column_values(
                 "Write the unit in the heading: {name} {unit}", name=name, unit=_COMPUTED[name]
             ),
         )
-    place = Message("{file}, column {column}", file=where, column=name)
+    place = column_place(where, name)
     if unit and name in _SI_UNITS:
         _refuse_other_unit(unit, _SI_UNITS[name], place)
     factor, offset = _to_si(unit, place)

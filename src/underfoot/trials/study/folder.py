@@ -147,9 +147,7 @@ def _jobs(
     )
     read, text = profile_of(folder, profile)
     columns = protocol.text("friction"), protocol.text("normal")
-    read = with_channels(
-        read, *columns, where=Message("protocol {protocol}", protocol=protocol.name)
-    )
+    read = with_channels(read, *columns, where=protocol.where)
     record = folder / CALIBRATION
     if record.is_file():
         read = replace(read, calibration=read_calibration(record))

@@ -228,7 +228,7 @@ def rcof_definition(protocol: Protocol) -> RcofDefinition:
     ``rcof_gate``, ``rcof_gate_body_weight``, ``rcof_shear``, ``rcof_peak``, ``rcof_braking``,
     ``rcof_part`` change single choices. An unknown name or setting is an `InputError`.
     """
-    where = Message("protocol {protocol}", protocol=protocol.name)
+    where = protocol.where
     known = [f"rcof_{key}" for key in _SETTINGS]
     for key in protocol.method:
         if key.startswith("rcof_") and key not in known:
@@ -287,7 +287,7 @@ def check_ramp(protocol: Protocol) -> None:
     elif "ramp" in protocol.method or "plate_frame" in protocol.method:
         raise InputError(
             Message("a ramp has no meaning in a protocol of the kind {kind}", kind=protocol.kind),
-            where=Message("protocol {protocol}", protocol=protocol.name),
+            where=protocol.where,
             allowed="only walking and human slips take ramp and plate_frame",
         )
 
