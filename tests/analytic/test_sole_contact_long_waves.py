@@ -259,3 +259,16 @@ def test_finite_elements_have_the_shape_of_elements_of_order_4(body):
         error = np.abs(rise(places) - true) / true.max()
         assert error.max() < 0.05
         assert error[(places[:, 1] < 1e-3) & (places[:, 0] < 20e-3)].max() < 0.02
+
+
+def test_a_wide_load_presses_rubber_and_midsole_in_series():
+    """Without free sides, far from the edge of the load, nu 0: T / E + T_m / E_m."""
+    sole = heel_map(heel("rubber", profile=Flat()), spacing=2.5e-3, shoe_angle=0.0)
+    body = layered_compliance(
+        sole, modulus=4e6, poisson_ratio=0.0, thickness=2e-3, midsole_modulus=2e6,
+        midsole_thickness=3e-3, midsole_poisson_ratio=0.0, free_edges=False,
+    )  # fmt: skip
+    deflection = body.apply(np.full(body.self_compliance.shape, PRESSURE))
+    middle = deflection[deflection.shape[0] // 2, deflection.shape[1] // 2]
+    assert middle == pytest.approx(PRESSURE * (2e-3 / 4e6 + 3e-3 / 2e6), rel=5e-3)
+    assert body.symbol(np.array([1.0]))[0] == pytest.approx(2e-3 / 4e6 + 3e-3 / 2e6, rel=1e-3)

@@ -266,7 +266,8 @@ def test_what_leaves_the_range_is_marked_on_both_sides_of_each_limit():
     def marked(**change: Any) -> list[str]:
         given: dict[str, Any] = {"elements": 12, "sunk": 0.019, "scaling": 1.0, "speed": 0.1}
         given |= change
-        fine = replace(SIDELESS, elements=(given["elements"], given["elements"], 1))
+        fine = replace(SIDELESS, elements=(given["elements"], given["elements"], 1),
+                       roughness=given.get("roughness", MicroSurface()))  # fmt: skip
         load = replace(PRESSED, speed=given["speed"])
         settings = ExplicitSettings(mass_scaling=given["scaling"])
         made = assemble_march(fine, WAVES, ELASTIC, load, settings)
@@ -278,6 +279,9 @@ def test_what_leaves_the_range_is_marked_on_both_sides_of_each_limit():
 
     assert marked() == []
     assert marked(elements=11) == ["elements a wavelength"]
+    halved = MicroSurface.checkerboard(1e-6, 20e-6)
+    assert marked(roughness=halved, floor=WAVES, elements=23) == ["elements a wavelength"]
+    assert marked(roughness=WAVES, floor=halved, elements=24) == []
     assert marked(sunk=0.021) == ["penetration over roughness"]
     assert marked(sunk=0.021, area=0.0) == []
     assert marked(floor=MicroSurface(), sunk=0.021, elements=11) == []

@@ -91,6 +91,7 @@ def seen(compound):
             for table in compound.tables()
         ],
         "data": {name: table.rows for name, table in compound.data_tables().items()},
+        "heads": {name: table.columns for name, table in compound.data_tables().items()},
         "toml": compound.toml(),
         "told": compound.to_dict(),
         "at": compound.temperature,

@@ -164,6 +164,14 @@ def film(**changes: Any) -> Film:
     return Film(**(given | changes))
 
 
+ONES = np.ones((9, 8))
+
+
+def cell(field: np.ndarray, value: float, at: int = 3) -> np.ndarray:
+    """Return a field with another value in one cell, of its rim where nothing else is said."""
+    return np.where(np.arange(72).reshape(9, 8) == at, value, field)
+
+
 FILMS: dict[str, dict[str, Any]] = {
     "plain": {},
     "back": {"speed": -0.4, "spacing": 1e-3},
@@ -373,6 +381,14 @@ REFUSED: dict[str, Callable[[], Any]] = {
     "fraction": lambda: film_pressure(film(rim_fraction=1.01)),
     "low fraction": lambda: film_pressure(film(rim_fraction=-0.01)),
     "starved": lambda: film_pressure(film(rim_fraction=0.5, rim_pressure=1.0)),
+    "one gap": lambda: film_pressure(film(gap=cell(gap_of(), 0.0, 27))),
+    "one lost gap": lambda: film_pressure(film(gap=cell(gap_of(), np.nan))),
+    "one factor": lambda: film_pressure(film(flow_factor=(cell(ONES, 0.0), 1.0))),
+    "one factor across": lambda: film_pressure(film(flow_factor=(1.0, cell(ONES, 0.0)))),
+    "one rim": lambda: film_pressure(film(rim_pressure=cell(ONES, -1.0))),
+    "one fraction": lambda: film_pressure(film(rim_fraction=cell(ONES, 1.01))),
+    "one starved": lambda: film_pressure(
+        film(rim_fraction=cell(ONES, 0.5), rim_pressure=cell(0 * ONES, 1.0))),
     "backend": lambda: film_pressure(film(), backend="none such"),
     "speed is": lambda: soft_ehl(viscosity=0.1, speed=0.5, speed_is="slidin", **BALL),
     "no speed": lambda: soft_ehl(viscosity=0.1, speed=-0.5, **BALL),

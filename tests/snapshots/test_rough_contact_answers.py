@@ -290,8 +290,9 @@ def test_theories(file_regression):
             law.breaches(pressure=1e9, speed=0.1), law.breaches(pressure=1e4, speed=0.1), law.name,
         )  # fmt: skip
         if isinstance(law, TabulatedLaw):
-            said[f"scaled {name}"] = (law.scaled(2.0, 3.0).pressure(gaps),
-                                      law.scaled(2.0, 3.0).ranges,
+            scaled = law.scaled(2.0, 3.0)
+            assert (scaled.name, scaled.source, scaled.speed) == (law.name, law.source, None)
+            said[f"scaled {name}"] = (scaled.pressure(gaps), scaled.ranges,
                                       law.changed(2.0, 3.0).flow_factor(gaps))  # fmt: skip
     held(file_regression, said)
 

@@ -25,6 +25,7 @@ from underfoot.surface.prepare import (
     held_level,
     level_surface,
     make_periodic,
+    square_cells,
     without_spikes,
 )
 from underfoot.surface.read import read_surface
@@ -385,3 +386,23 @@ def test_wave_numbers_rise_from_above_nothing(wrong):
     for density in ([1.0, -1e-9], [1.0, np.nan]):
         with pytest.raises(InputError, match="negative or missing"):
             ProfileSpectrum(np.array([1.0, 2.0]), np.array(density), (1.0, 2.0))
+
+
+@pytest.mark.parametrize("rows", [2, 3, 4])
+def test_few_oblong_rows_are_divided_by_what_they_bear(rows):
+    """A line through two rows, a parabola through three, a cubic through four: exact."""
+    x = np.arange(rows) * 3e-6
+    degree = rows - 1
+    surface = HeightMap(np.tile((x**degree)[:, None], (1, 6)), 3e-6, spacing_y=1e-6)
+    square = square_cells(surface)
+    fine = np.arange(3 * degree + 1) * 1e-6
+    assert square.spacings == (1e-6, 1e-6)
+    assert square.heights[:, 2] == pytest.approx(fine**degree, abs=1e-12 * x[-1] ** degree)
+
+
+@pytest.mark.parametrize(("off", "marked"), [(0.009, False), (0.011, True)])
+def test_positions_rounded_in_print_are_marked_from_one_percent_of_the_spacing_on(off, marked):
+    x = np.arange(201.0)
+    x[100] += off
+    profile = profile_from_positions(x * 1e-6, np.zeros(201), rounding=0.02e-6)
+    assert bool(profile.processing) == marked

@@ -43,6 +43,13 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.parametrize(("processors", "taken"), [(1, 1), (4, 4), (16, 4)])
+def test_as_many_work_as_there_are_processors_and_at_most_four(monkeypatch, processors, taken):
+    monkeypatch.setattr(pool_module, "available_processors", lambda: processors)
+    assert pool_module.workers(None) == taken
+    assert pool_module.workers(7) == 7
+
+
 @pytest.mark.parametrize("processes", [1, 2])
 def test_answers_come_with_their_index_and_progress_ends_at_one(processes):
     told = []

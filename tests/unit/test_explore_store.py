@@ -21,6 +21,7 @@ from underfoot.explore import store as store_module
 from underfoot.explore.lines import seal_line
 from underfoot.explore.record import CaseJob, Ending, Record
 from underfoot.explore.result import StudyResult
+from underfoot.explore.scan import scan_cases
 from underfoot.explore.status import StudyStatus
 from underfoot.explore.store import Store
 from underfoot.explore.study import Study
@@ -450,6 +451,9 @@ def test_a_folder_of_version_1_is_read_and_gone_on_with(store):
         assert len(result.designs) == 3 - (text[-1] != "\n")
         one = result.records[jobs[1].key]
         assert (one.number("cof"), one.draws.tolist(), one.breaches) == (0.25, [0.25, 0.5], ("a",))
+        scanned = scan_cases(Store(store.folder).records(), ["cof"], draws=True)
+        assert scanned.draws is not None
+        assert scanned.draws[scanned.rows[jobs[1].key]].tolist() == [0.25, 0.5]
         assert Study.load(store.folder)._begin_next()
         assert list(Store(store.folder).jobs()) == jobs
         after = Store(store.folder).round

@@ -41,6 +41,10 @@ def holed() -> np.ndarray:
     return height
 
 
+def a_little_back_at_high_rates(w):
+    return np.where(np.abs(w) > 1e5, 1e9 - 1e6j, 1e6 - 1e5j)
+
+
 def negative_term(w):
     return 1e6 - 5e5j * w * 1e-3 / (1 + 1j * w * 1e-3)
 
@@ -71,6 +75,7 @@ def negative_term(w):
         ({"modulus": lambda w: 1e6 * 1j * w}, "liquid"),
         ({"modulus": lambda w: 1e6 - 1e5j * np.sign(w)}, "conjugate"),
         ({"modulus": negative_term}, "energy back"),
+        ({"modulus": a_little_back_at_high_rates}, r"E\* = 1e\+06-1e\+05j Pa.*energy back"),
         ({"layer_thickness": 0.0}, "above 0 m"),
     ],
 )

@@ -246,7 +246,7 @@ def _is_this_machine(name: str) -> bool:
 
 def _own_address() -> str:
     """Return the address by which others of the network reach this machine, as far as it knows."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+    with socket.socket(type=socket.SOCK_DGRAM) as probe:
         try:
             probe.connect(("192.0.2.1", 9))  # of the documentation: nothing is sent
             return probe.getsockname()[0]

@@ -158,7 +158,7 @@ def compare(
 
     check_paths(paths)
     items = [Result.load(path) if path.is_dir() else shared.case(path) for path in paths]
-    known = catalogue_for(None, shared.catalogue)
+    known = catalogue_for(shared.catalogue)
     shared.answer(
         " and ".join(item.name for item in items),
         lambda progress: compared(

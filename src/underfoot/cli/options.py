@@ -164,7 +164,7 @@ def sharing(
     return decorate
 
 
-def catalogue_for(case: Path | None, folders: list[Path] | None) -> Catalogue:
+def catalogue_for(folders: list[Path] | None, case: Path | None = None) -> Catalogue:
     """Return the catalogue with the user's folders and that beside the case."""
     from underfoot.core.catalogue import Catalogue, catalogue_folders
 
@@ -186,7 +186,7 @@ def load_case(path: Path, folders: list[Path] | None, settings: Sequence[str] | 
             nearest=None if inner is None else str(inner),
         )
     changes = dict(map(setting, settings or ()))
-    return Case.load(path, catalogue=catalogue_for(path, folders), settings=changes)
+    return Case.load(path, catalogue=catalogue_for(folders, path), settings=changes)
 
 
 def setting(text: str) -> tuple[str, Any]:

@@ -34,7 +34,7 @@ def new(
         floor=floor,
         contaminant=fluid,
         motion=setup,
-        catalogue=catalogue_for(file, catalogue),
+        catalogue=catalogue_for(catalogue, file),
         name=name,
         file=file.name,
     )
@@ -61,7 +61,7 @@ def explain(
     """
     from underfoot.case.explanation import explanation
 
-    print(explanation(name, catalogue_for(None, catalogue), full=everything))
+    print(explanation(name, catalogue_for(catalogue), full=everything))
 
 
 def catalogue(
@@ -77,7 +77,7 @@ def catalogue(
     from underfoot.core.errors import unknown_name
     from underfoot.core.presentation import Table
 
-    known = catalogue_for(None, catalogue)
+    known = catalogue_for(catalogue)
     if kind.removesuffix("s") in KINDS:
         kind = kind.removesuffix("s")
     if kind and kind not in KINDS:

@@ -46,5 +46,5 @@ def wall_shear(
         raise InputError("the gap is not positive everywhere", where="gap", allowed="above 0, in m")
     slope = np.gradient(p, positive(spacing, "spacing"), axis=0)
     along = theta * positive(viscosity, "viscosity") * speed / h
-    push = np.where(np.isfinite(h), 0.5 * np.where(np.isfinite(h), h, 0.0) * slope, 0.0)
+    push = 0.5 * np.where(np.isfinite(h), h, 0.0) * slope
     return along - push, along + push

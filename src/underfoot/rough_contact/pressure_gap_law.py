@@ -231,8 +231,8 @@ class TabulatedLaw(_PresentableLaw):
             for name, limits in self.ranges.items()
             if name == "pressure"
         }
-        nodes = gap * self.gap, pressure * self.node_pressure, self.node_flow_factor
-        return TabulatedLaw(self.name, self.source, *nodes, ranges=ranges)
+        nodes = pressure * self.node_pressure
+        return replace(self, gap=gap * self.gap, node_pressure=nodes, speed=None, ranges=ranges)
 
     def changed(self, gap: float, flow: float) -> "TabulatedLaw":
         """Return the law with its gaps and flow factors (at most 1) times factors above 0."""

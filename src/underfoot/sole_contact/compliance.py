@@ -286,11 +286,12 @@ def layered_compliance(
     elastic = {"modulus": modulus, "poisson_ratio": poisson_ratio}
     plane = modulus / (1 - poisson_ratio**2)
     layer = partial(bonded_layer_symbol, **elastic, thickness=thickness)
+
+    def whole(q: Array) -> Array:
+        return layer(q) + midsole(q)
+
     if not free_edges:
-        plain = influence(lambda q: layer(q) + midsole(q))
-        return ConvolutionCompliance(
-            shape, [(plain, None)], lambda q: layer(q) + midsole(q), modulus=plane
-        )
+        return ConvolutionCompliance(shape, [(influence(whole), None)], whole, modulus=plane)
 
     depth = mean_lug_depth(sole)
     land = sole.inside & sole.land

@@ -109,7 +109,7 @@ def predict_shares(sources: Sequence[SlipShare]) -> list[dict[str, Any]]:
         mean = float((joint * computed).sum())
         order = np.argsort(computed, axis=None)
         ends = np.searchsorted(np.cumsum(joint.ravel()[order]), (0.025, 0.975))
-        low, high = computed.ravel()[order][ends.clip(max=computed.size - 1)]
+        low, high = computed.ravel()[order][ends]
         report = ReportG6()
         alone = np.mean(
             report.population(slips.acof, ADULTS_LEVEL_WALKING.mean, ADULTS_LEVEL_WALKING.sd)
