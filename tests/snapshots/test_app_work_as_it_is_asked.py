@@ -336,8 +336,8 @@ def test_addresses_secrets_and_servers(file_regression, tmp_path, monkeypatch):
     told: dict[str, Any] = {}
 
     class Probe:
-        def __init__(self, *given):
-            told.setdefault("probe", [int(one) for one in given])
+        def __init__(self, **given):
+            told.setdefault("probe", {key: int(one) for key, one in given.items()})
 
         def __enter__(self):
             return self

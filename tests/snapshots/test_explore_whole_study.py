@@ -25,7 +25,7 @@ maximise = ["cof"]
 [method]
 grid = "quick"
 """
-PASSING = r"[\d.]+ (?:to [\d.]+ )?(?:[kMG]?B|s|min|h)\b|\d+ cases a minute, workers \d+%"
+PASSING = r"[\d.]+ (?:to [\d.]+ )?(?:[kMG]?B|s|min|h)\b|[\d.]+ cases a minute, workers \d+%"
 
 pytestmark = pytest.mark.usefixtures("wide")
 
