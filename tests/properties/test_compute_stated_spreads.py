@@ -1,7 +1,8 @@
 """What a case states with a standard deviation reaches every number that a run prints."""
 
 import math
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -18,8 +19,9 @@ from underfoot.compute.stated_spreads import (
     odds_changes,
     stated_spreads,
 )
-from underfoot.core import SourcedValue
+from underfoot.core import InputError, SourcedValue, Status
 
+LENGTH = "shoe.heel.length"
 FILM = ("fluid_load", "fluid_load_sensor", "peak_fluid_pressure")
 MOVED = ("peak_fluid_pressure", "cof_viscous", "contact_area", "minimum_film_thickness")
 
@@ -180,6 +182,45 @@ def test_a_spread_in_a_list_is_refused():
         heel().replace("friction", {"model": "table", "readings": readings})
     own = {"model": "table", "readings": [{**each, "cof": 0.2, "sd": 0.1} for each in readings]}
     assert heel().replace("friction", own).friction.readings[0].sd == 0.1
+
+
+@pytest.mark.parametrize("lost", [None, "one place", "all places"])
+def test_a_spread_moves_the_mean_over_the_places_that_have_numbers(monkeypatch, lost):
+    """Two places of a tread: loads on the film of 40 and 60 N, 60 and 90 N one deviation more."""
+    case = stated(heel(**{"numerics.tread_positions": 4}), LENGTH, 5e-3)
+    places = solve.effect_places(case)[:2]
+    monkeypatch.setattr(solve, "effect_places", lambda _: places)
+    parts = SimpleNamespace(case=case, objects={"friction": None}, spacing=1e-3)
+
+    def of_cases(cases, spacing, objects):
+        assert objects == parts.objects
+        factors = [each.value(LENGTH) / case.value(LENGTH) for each in cases]
+
+        def numbers(asked):
+            number, place = asked
+            if lost == "all places" or (lost and place == places[1]):
+                return None
+            film = {places[0]: 40.0, places[1]: 60.0}[place] * factors[number]
+            parts = dict.fromkeys(("cof_adhesion", "cof_hysteresis", "cof_viscous"), 0.03)
+            return {"fluid_load": film, "contact_load": 500.0 - film, "cof": 0.09, **parts}
+
+        return numbers
+
+    def no_step(*_):
+        raise InputError("the finished contact does not go on")
+
+    monkeypatch.setattr(solve, "prepare_case", no_step)
+    monkeypatch.setattr(solve, "_NumbersOfCases", of_cases)
+    contact = SimpleNamespace(status=Status.CONVERGED)
+    made = solve.stated_effects(cast(Any, parts), cast(Any, contact), processes=2)
+    if lost == "all places":
+        assert made.left_out == (LENGTH,)
+        return
+    ends = stated_spreads(case)[0].changes
+    factors = [cast(float, end[LENGTH]) / case.value(LENGTH) for end in ends]
+    mean = 40.0 if lost else 50.0
+    odds = [math.log(mean * x / (500 - mean * x)) - math.log(mean / (500 - mean)) for x in factors]
+    assert made.effects[0].moves[ODDS] == pytest.approx(odds)
 
 
 def test_an_end_that_cannot_be_is_as_far_as_the_other():

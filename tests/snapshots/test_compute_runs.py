@@ -81,6 +81,24 @@ def test_a_quick_run_and_what_cases_cost(file_regression):
     held(file_regression, costs, "costs")
 
 
+def test_a_sole_whose_rubber_gives_way_has_no_peak_of_the_film(file_regression):
+    """The sensor's, a mean over its face, it has."""
+    steep = {
+        "motion.shoe_angle": "20 deg",
+        "motion.normal_force": "400 N",
+        "shoe.material.shore_a": 40,
+    }
+    made = run(pad(COARSE, steep, {"numerics.quick_grid_spacing": "4 mm",
+                                   "contaminant.viscosity": "1 Pa s"}), quick=True)  # fmt: skip
+    assert made.scalars["peak_fluid_pressure"].value is None
+    assert made.value("peak_fluid_pressure_sensor") > 0
+    held(
+        file_regression,
+        [made.headline(), made.cautions(), made.scalars, made.labels],
+        "run_crushed",
+    )
+
+
 def test_objects_stand_in_for_options(file_regression):
     case = pad(COARSE)
     made = run(case, quick=True, risk=Chang2004(), viscosity="50 cP", friction="stribeck")
@@ -95,6 +113,17 @@ def test_objects_stand_in_for_options(file_regression):
         ),
     }
     held(file_regression, refused, "objects_refused")
+
+
+def test_a_contact_table_takes_time_where_no_file_brings_it(tmp_path):
+    file = tmp_path / "made.npz"
+    file.touch()
+    model = pad({"rough_contact": {"model": "contact_table"}})
+    check = case_check(pad(COARSE))
+    (_, dear) = replace(check, case=model).headline()
+    assert "contact table takes about" in dear
+    brought = model.replace("rough_contact.file", str(file))
+    assert len(replace(check, case=brought).headline()) == 1
 
 
 def test_cases_before_they_are_computed(file_regression):
