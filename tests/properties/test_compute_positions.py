@@ -695,7 +695,6 @@ def test_a_place_that_does_not_converge_is_said_first_and_widens_the_error(monke
             parts,
             SimpleNamespace(contact=SimpleNamespace(normal_force=force)),
             positions,
-            quick=False,
         )
         errors[left_out] = found.grid["fluid_load"]
         told = positions.labels()

@@ -192,7 +192,7 @@ def test_the_numerical_error_of_a_motion_holds_its_steps_in_time(shoe, fluid, mo
     parts = prepare_case(case, case.numerics.quick_grid_spacing)
     solution = solve_case(parts)
     positions = average_positions(parts, solution, quick=True)
-    errors = numerical_errors(parts, solution, positions, quick=True)
+    errors = numerical_errors(parts, solution, positions)
     settings = solve.solver_settings
     monkeypatch.setattr(
         solve,

@@ -115,6 +115,13 @@ def test_objects_stand_in_for_options(file_regression):
     held(file_regression, refused, "objects_refused")
 
 
+def test_nothing_is_said_of_lugs_whose_film_bears_little():
+    """A twentieth of the load or less: how they drain it moves nothing."""
+    thin = run(pad(BARS, {"contaminant.viscosity": "1 cP"}), quick=True)
+    assert 0.005 < thin.value("fluid_load") / thin.value("normal_force") < 0.05
+    assert "drainage" not in thin.labels
+
+
 def test_a_contact_table_takes_time_where_no_file_brings_it(tmp_path):
     file = tmp_path / "made.npz"
     file.touch()

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -306,6 +306,33 @@ def test_feet_on_floors_of_known_friction(file_regression):
     said["error"] = error_of(other, runs), str(error_of(other, runs)), error_of(other, [])
     said["texts"] = [error_text(value, "m/s") for value in (0.0, 9.9e-4, 1e-3, 0.0234)]
     held(file_regression, said)
+
+
+@dataclass
+class Asked(Floor):
+    """A floor without friction that writes down what it is asked."""
+
+    asked: list[tuple[float, float, float, float]] = field(default_factory=list)
+
+    def advance(self, duration, *, normal_force, speed, shoe_angle):
+        self.asked.append((duration, normal_force, speed, shoe_angle))
+        return self
+
+    def friction(self, speed):
+        return 0.0
+
+
+def test_a_contact_is_asked_for_what_the_end_of_each_step_demands():
+    person, floor = Walker(step(), shoe_angle=0.1, recorded_angle=True, heel_speed=0.4), Asked()
+    motion = slip_motion(person, floor, step=0.01)
+    durations, loads, speeds, angles = np.transpose(floor.asked)
+    times = np.cumsum(durations)
+    assert times == pytest.approx(motion.time[1:])
+    demanded = person.demands(times)
+    assert loads == pytest.approx(demanded[0])
+    assert angles == pytest.approx(demanded[2])
+    assert np.ptp(angles) > 0.05
+    assert speeds[1:] == pytest.approx(motion.speed[2:], abs=0.05)
 
 
 def test_the_compiled_steps_of_a_slip(file_regression):

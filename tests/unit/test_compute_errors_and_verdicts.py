@@ -166,7 +166,7 @@ def test_errors_of_a_grid_are_those_of_its_rule_its_grids_and_its_lost_places(
     case = CASE.replace("numerics.grid_check", False)
     parts = fake(case=case, spacing=1e-3, objects={}, sole=None)
     solution = fake(contact=fake(normal_force=500.0))
-    found: Any = numerical_error.numerical_errors(parts, solution, at, quick=False)
+    found: Any = numerical_error.numerical_errors(parts, solution, at)
     size, alone = (2.0, True) if uncompared else (1.0, False)
     share = {k: size * v[alone] for k, v in numerical_error.BETWEEN_GRIDS[True].items()}
     film = np.array([0.2, 0.4])

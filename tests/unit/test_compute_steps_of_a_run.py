@@ -16,6 +16,7 @@ from underfoot.compute.positions import TURNED, carry_to_finer, tread_positions
 from underfoot.compute.steadiness import _least, settling_time, with_steadiness
 from underfoot.core import ConvergenceError, InputError, SourcedValue
 from underfoot.friction import FrictionParts
+from underfoot.rough_contact import TabulatedLaw
 
 CASE = load(Path(__file__).parents[2] / "examples" / "work_shoe_full_tread_glycerol.toml")
 
@@ -303,6 +304,37 @@ def test_how_unknown_a_film_is_is_solved_with_more_and_less_of_what_leaks(
         assert factors == pytest.approx([math.exp(-0.5), math.exp(0.5)])
         ends = [math.log(110 * f / (500 - 110 * f)) - math.log(110 / 390) for f in factors]
         assert told == {solve.LEAK: pytest.approx(tuple(ends))}
+
+
+def test_gap_and_flow_of_measured_surfaces_have_each_their_two_ends(monkeypatch):
+    """A film that bears 100 N times the gap times the root of the flow, of what was measured."""
+    gaps, loads = np.array([1e-6, 2e-6, 4e-6]), np.array([1e6, 1e5, 1e4])
+    law = TabulatedLaw("a", "b", gaps, loads, np.array([0.2, 0.4, 0.4]))
+
+    class Parts:
+        objects: dict[str, Any] = {}
+        film, asperities, case, spacing = "film", law, CASE, 1e-3
+        context = fake(leak_deviation=0.0)
+
+        def on(self, asperities):
+            return asperities
+
+    def continued(start, changed, **_):
+        gap, flow = changed.gap[0] / gaps[0], changed.node_flow_factor[0] / 0.2
+        load = 100.0 * gap * math.sqrt(flow)
+        return [fake(), fake(fluid_load=load, normal_force=500.0, status=fake(usable=True))]
+
+    monkeypatch.setattr(
+        solve, "micro_contact", lambda *_: fake(gap_deviation=0.1, flow_deviation=0.2)
+    )
+    monkeypatch.setattr(solve, "continue_contact", continued)
+    state = fake(fluid_load=90.0, normal_force=500.0, status=fake(usable=True))
+    spreads = solve.film_spreads(Parts(), state)  # type: ignore[arg-type]
+    for name, factor in ((solve.GAP, 1.1), (solve.FLOW, math.sqrt(1.2))):
+        ends = (100.0 / factor, 100.0 * factor)
+        moves = [math.log(end / (500 - end)) - math.log(100 / 400) for end in ends]
+        assert spreads[name] == pytest.approx(moves)
+    assert set(spreads) == {solve.GAP, solve.FLOW}
 
 
 @pytest.mark.parametrize("fails", [True, False])

@@ -149,8 +149,6 @@ def numerical_errors(
     parts: Prepared,
     solution: Solution,
     positions: TreadPositions | None,
-    *,
-    quick: bool,
     progress: Progress = silent,
 ) -> NumericalErrors | str:
     """Return the numerical errors of a solved case, or why they are not known.
@@ -174,9 +172,8 @@ def numerical_errors(
     """
     case = parts.case
     numerics = case.numerics
-    checked = (
-        numerics.grid_check and not quick and numerics.quick_grid_spacing >= CLOSEST * parts.spacing
-    )
+    # a quick run is on the quick grid itself
+    checked = numerics.grid_check and numerics.quick_grid_spacing >= CLOSEST * parts.spacing
     if "compliance" in parts.objects:
         if checked:
             raise InputError(

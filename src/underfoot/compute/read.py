@@ -51,8 +51,6 @@ def readings(
     parts: Prepared,
     solution: Solution,
     positions: TreadPositions | None,
-    *,
-    quick: bool,
     progress: Progress = silent,
 ) -> ResultNumbers:
     """Return the numbers of a solved case, as means over the positions of its tread.
@@ -69,7 +67,7 @@ def readings(
     friction, sampled = solution.friction.sums, solution.friction.sampled
     if positions:
         friction, sampled = positions.friction(friction, sampled)
-    errors = numerical_errors(parts, solution, positions, quick=quick, progress=progress)
+    errors = numerical_errors(parts, solution, positions, progress)
     if sampled is not None and isinstance(errors, NumericalErrors):
         cof, name = friction.cof, numbers.sole_name(case)
         error = errors.deviation("cof")

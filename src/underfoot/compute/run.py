@@ -75,7 +75,7 @@ def run(
     rest = part(progress, first, 1.0)
     positions = average_positions(parts, solution, quick=quick, processes=beside, progress=rest)
     moments.append(time.perf_counter())
-    reading = readings(parts, solution, positions, quick=quick, progress=progress)
+    reading = readings(parts, solution, positions, progress)
     moments.append(time.perf_counter())
     stages = ("preparation_s", "solution_s", "evaluation_s")
     seconds = (after - before for before, after in pairwise(moments))

@@ -64,7 +64,7 @@ def heel_marker(motion: SlipMotion) -> tuple[Array, Array]:
     swing = frames < 0
     v[swing] = np.minimum(motion.walker.heel_speed - SWING_BRAKING * frames[swing], SWING_SPEED)
     slow = frames < -0.35
-    v[slow] *= np.clip((frames[slow] + BEFORE) / (BEFORE - 0.35), 0.0, 1.0)
+    v[slow] *= np.maximum((frames[slow] + BEFORE) / (BEFORE - 0.35), 0.0)
     gone = frames > lift
     v[gone] += 20.0 * (frames[gone] - lift)
     x = np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) / RATE)])
