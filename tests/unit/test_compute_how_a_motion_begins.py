@@ -17,7 +17,7 @@ def motion(loads, angles=("3 deg", "3 deg"), speeds=("0.3 m/s", "0.3 m/s"), **mo
 
 @pytest.mark.parametrize(
     ("load", "rise", "within"),
-    [("60 N", "4 ms", "4 ms"), ("0.5 N", "10 ms", "10 ms"), ("60 N", "30 ms", "10 ms")],
+    [("60 N", "4 ms", "4 ms"), ("500 mN", "10 ms", "10 ms"), ("60 N", "30 ms", "10 ms")],
 )
 def test_a_load_that_is_there_at_once_comes_up_within_its_rise_or_a_step(load, rise, within):
     text = str(_last_instant(motion((load, "50 N"), force_rise_time=rise)))

@@ -311,13 +311,8 @@ def test_gap_and_flow_of_measured_surfaces_have_each_their_two_ends(monkeypatch)
     gaps, loads = np.array([1e-6, 2e-6, 4e-6]), np.array([1e6, 1e5, 1e4])
     law = TabulatedLaw("a", "b", gaps, loads, np.array([0.2, 0.4, 0.4]))
 
-    class Parts:
-        objects: dict[str, Any] = {}
-        film, asperities, case, spacing = "film", law, CASE, 1e-3
-        context = fake(leak_deviation=0.0)
-
-        def on(self, asperities):
-            return asperities
+    parts = fake(objects={}, film="film", asperities=law, case=CASE, spacing=1e-3,
+                 context=fake(leak_deviation=0.0), on=lambda asperities: asperities)  # fmt: skip
 
     def continued(start, changed, **_):
         gap, flow = changed.gap[0] / gaps[0], changed.node_flow_factor[0] / 0.2
@@ -329,7 +324,7 @@ def test_gap_and_flow_of_measured_surfaces_have_each_their_two_ends(monkeypatch)
     )
     monkeypatch.setattr(solve, "continue_contact", continued)
     state = fake(fluid_load=90.0, normal_force=500.0, status=fake(usable=True))
-    spreads = solve.film_spreads(Parts(), state)  # type: ignore[arg-type]
+    spreads = solve.film_spreads(parts, state)
     for name, factor in ((solve.GAP, 1.1), (solve.FLOW, math.sqrt(1.2))):
         ends = (100.0 / factor, 100.0 * factor)
         moves = [math.log(end / (500 - end)) - math.log(100 / 400) for end in ends]

@@ -213,7 +213,7 @@ def test_the_error_of_a_run_is_spread_about_its_own_cof(monkeypatch):
     parts: Any = SimpleNamespace(case=None, context=SimpleNamespace(youngs_modulus=5e6))
     solution: Any = SimpleNamespace(contact=contact, friction=friction)
     with pytest.raises(Asked) as told:
-        read.readings(parts, solution, None, quick=True)
+        read.readings(parts, solution, None)
     assert told.value.args == ("draws", 0.01, 0.12, "a")
 
 
