@@ -231,6 +231,18 @@ def test_reading_a_step_file_shows_progress_and_stops_beside_sliders(tmp_path):
         assert page.complaints == []
 
 
+def test_of_the_shoe_that_gave_way_only_what_a_person_set_stays(tmp_path):
+    project = project_of(tmp_path / "project", "heel")
+    project.change("heel", {"shoe.material.shore_a": 65.0, "shoe.tread.depth": "2 mm"})
+    case = project.take_sole("heel", {"from": "athletic_shoe_untreaded"})
+    plain = project.case("heel").replace("shoe", {"from": "athletic_shoe_untreaded"})
+    given = {path for path, origin in case.origins.items() if origin.kind == "given"}
+    before = {path for path, origin in plain.origins.items() if origin.kind == "given"}
+    assert given - before == {"shoe.material.shore_a"}
+    assert case.value("shoe.material.shore_a") == 65.0
+    assert case.value("shoe.tread.depth") == plain.value("shoe.tread.depth")
+
+
 def test_a_file_in_the_app_is_the_case_that_inspect_writes(tmp_path):
     """What a person set before stays; nothing of the shoe begun with does."""
     own = {"shoe.material.shore_a": 65.0, "shoe.wear.depth": 1e-3}
