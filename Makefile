@@ -33,7 +33,7 @@ test: check test-quick  ## static checks, then every quick test (minutes)
 test-quick: $(READY)  ## every test that is neither costly nor slow
 	$(PYTEST) worksteal -n 2 -m "not costly and not slow and not study"
 
-test-costly: $(READY)  ## those of a second, by which no planted fault dies alone (tests/costly.txt)
+test-costly: $(READY)  ## those by which no planted fault dies alone (tests/costly.txt)
 	$(PYTEST) worksteal -n 2 -m "costly and not slow and not study"
 
 fuzz: $(READY)  ## Hypothesis with examples that no run had before; SEED=N repeats a run
