@@ -419,9 +419,7 @@ def _dry_study(
 ) -> SlipStudy:
     """Without fluid friction depends on load and speed alone: the reduced model is exact."""
     speeds, cofs = cof_table(setting.friction, 3e5)
-    constants = np.ones(len(NAMES))
-    constants[[1, 2]] = 0.0
-    sole = ReducedSole(constants, None, 1e-3, setting.shoe_angle, speeds, cofs)
+    sole = ReducedSole(np.ones(len(NAMES)), None, 1e-3, setting.shoe_angle, speeds, cofs)
     subjects = _reduced_subjects(sole, None, walkers, array, limits)
     study = SlipStudy(setting, population, array, tuple(subjects), False, sole=sole)
     return replace(study, by_friction=study.at_friction_draws())
