@@ -271,7 +271,8 @@ def nearest_and_others(file: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the files of tests that import the module of a file, and the others of its room."""
     parts = Path(file).with_suffix("").parts
     module, room = ".".join(("underfoot", *parts)), parts[0]
-    names = (module, f"from {module.rpartition('.')[0]} import {parts[-1]}\n")
+    whole = f"from {module.rpartition('.')[0]} import {parts[-1]}"
+    names = module, f"{whole}\n", f"{whole} as "
     nearest, others = [], []
     for path, text in test_texts():
         text = with_helpers(text)

@@ -246,7 +246,8 @@ def _near(one: str, other: str) -> bool:
     if not re.search(r"[.eE]", one):  # a count
         return False
     (first, digits), (second, _) = map(_number, (one, other))
-    last = 1.01 * 10.0**-digits if len(re.sub(r"\D", "", one).lstrip("0")) > 2 else 0.0
+    written = re.sub(r"[eE].*|\D", "", one).lstrip("0")  # 1e9 has one digit, and no rounded last
+    last = 1.01 * 10.0**-digits if len(written) > 2 else 0.0
     return math.isclose(first, second, rel_tol=RELATIVE, abs_tol=last)
 
 

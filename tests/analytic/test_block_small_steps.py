@@ -16,11 +16,11 @@ from underfoot.block.assembly import (
 )
 from underfoot.block.inputs import MicroBlock, MicroLoading, MicroMaterial, MicroSurface
 from underfoot.block.march import COLUMNS, BlockMarch, _edges, loaded_state, saved_state
-from underfoot.block.mesh import block_mesh
+from underfoot.block.mesh import block_mesh, layer_heights
 from underfoot.block.one_term_fit import fit_single_exponential
 from underfoot.block.prony_march import prony_step
 from underfoot.block.result import EDGE_EXCESS, EnergyLedger, edge_excess_area
-from underfoot.core import ConvergenceError, DataError, silent
+from underfoot.core import ConvergenceError, DataError, InputError, silent
 from underfoot.material import single_exponential_spectrum
 from underfoot.surface import HeightMap
 
@@ -271,3 +271,16 @@ def test_a_march_stops_where_it_makes_energy_or_turns_an_element(
     else:
         with pytest.raises(ConvergenceError, match=trouble):
             march._check(row_of(row))
+
+
+@pytest.mark.parametrize(("ratio", "fits"), [(0.49, False), (0.6, True), (1.9, True), (2.1, False)])
+def test_layers_grow_by_at_most_two_from_one_to_the_next(ratio, fits):
+    """Of four layers of one ratio the lowest is h / (1 + r + r^2 + r^3)."""
+    lowest = 20e-6 / float(np.sum(ratio ** np.arange(4)))
+    block = MicroBlock((40e-6, 30e-6, 20e-6), (4, 3, 4), bottom_layer=lowest)
+    if not fits:
+        with pytest.raises(InputError, match="asks for a ratio of"):
+            layer_heights(block)
+        return
+    layers = np.diff(layer_heights(block))
+    assert layers[1:] / layers[:-1] == pytest.approx([ratio] * 3)

@@ -152,6 +152,13 @@ def test_the_mean_ratio_of_slips_lies_between_its_ends(before, after):
 )
 def test_a_reading_of_a_shoe_is_a_friction_that_a_machine_can_show(cof, right):
     test = next(iter(slip_tests()))
+    for sd, named in ((2.0, True), (2.1, False)):
+        shoe = {**TABLE["shoe"][0], "reading": [{"test": test, "cof": 0.3, "sd": sd}]}
+        if named:
+            assert place_of(TABLE | {"shoe": [shoe]}).shoes[0].readings[0].reading.sd == sd
+        else:
+            with pytest.raises(InputError, match=r"reading 1\.sd"):
+                place_of(TABLE | {"shoe": [shoe]})
     shoe = {**TABLE["shoe"][0], "reading": [{"test": test, "cof": cof}]}
     if right:
         assert place_of(TABLE | {"shoe": [shoe]}).shoes[0].readings[0].reading.cof == cof

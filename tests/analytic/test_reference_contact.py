@@ -164,3 +164,8 @@ def test_incompressible_layer_needs_no_cancellation_luck():
 def test_refusals(call, match):
     with pytest.raises(ValueError, match=match):
         call()
+
+
+def test_one_pressure_below_zero_among_others_is_refused():
+    with pytest.raises(ValueError, match="pressure must be zero or positive"):
+        reference.sinusoid_contact_fraction([1e3, -1.0], 1e5)

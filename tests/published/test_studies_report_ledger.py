@@ -103,6 +103,7 @@ def test_the_numbers_say_what_the_sentences_say():
     assert n["water_rough"] > 2 * n["water_smooth"]
     assert n["water_light"] == pytest.approx(n["water_heavy"], rel=0.02)
     assert n["adhesion_hard"] > n["adhesion_soft"] > n["adhesion_pu"]
+    assert n["adhesion_soft"] == pytest.approx(9.86, rel=0.02)
     assert n["glycerol_hard"] < n["glycerol_soft"] < 1.1 * n["glycerol_hard"]
     assert n["lambda_canola"] == pytest.approx(3.07, abs=0.01)
 

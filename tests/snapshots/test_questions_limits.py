@@ -631,6 +631,7 @@ def test_open_inputs_of_cases(file_regression):
         case = TREADED.replace(change)
         told[name] = [[one.path, one.deviation, one.ratio, one.reason]
                       for one in sensitivity.open_inputs(case)]  # fmt: skip
+    told["limits"] = [(one.path, one.low, one.high) for one in sensitivity.OPEN_INPUTS]
     wide = next(one for one in sensitivity.OPEN_INPUTS if one.path == "shoe.heel.width")
     at = sensitivity._at(TREADED, wide, 1.1 * TREADED.value("shoe.heel.width"))
     radius = "shoe.heel.rear_radius"

@@ -17,6 +17,7 @@ from underfoot.explore.study import Study
 from underfoot.report import design_study
 from underfoot.report import live_study as live
 from underfoot.report.dispatch import figures, sections
+from underfoot.report.studies_page import _cell
 
 HIDDEN = r'"data": "[^"]*"|"(?:viridis|RdBu_r|cividis|YlGnBu_r)": "[^"]*"|src="data:[^"]*"'
 NOW = 1.7e9 + 500.0
@@ -225,3 +226,8 @@ def test_a_report_of_a_study_in_its_folder(file_regression, tmp_path, monkeypatc
         "results": (folder / "results.csv").read_text().splitlines()[0],
     }
     held(file_regression, told)
+
+
+def test_small_numbers_of_a_table_have_four_digits_and_the_smallest_three():
+    assert [_cell(value)[0] for value in (0.0012345, 0.00099911, 12345.6, 123456.7, 0.0)] == [
+        "0.001234", "0.000999", "1.235e+04", "1.23e+05", "0"]  # fmt: skip

@@ -219,6 +219,12 @@ def test_the_error_of_a_table_is_that_at_the_nodes_that_are_left_out():
     made = _table([], P, V, columns, ["k"], "d")
     errors = leave_out_errors(made)
     assert errors["cof_hysteresis"] == pytest.approx(0.03, rel=0.01)
+    pressures = np.append(P, 32e3)
+    longer = [{k: np.append(c, 2 * c[-1] - c[-2]) if c.size == P.size else c
+               for k, c in one.items()} for one in columns]  # fmt: skip
+    longer[0]["cof_hysteresis"][[3, 5]] += -0.03, 0.5
+    even = leave_out_errors(_table([], pressures, V, longer, ["k"], "d"))
+    assert even["cof_hysteresis"] < 0.1  # the last node stays: without it, 0.5 and more
     assert "4 pressure nodes" in refusal(
         leave_out_errors, _table([], P[:4], V, [{k: c[:4] for k, c in columns[0].items()}] * 2,
                                  ["k"], "d")

@@ -18,6 +18,7 @@ from underfoot.trials.machines.pin_on_disk import (
 from underfoot.trials.machines.pressure_map import pressure_map, pressure_scan
 from underfoot.trials.machines.pressures import (
     PulseDefinition,
+    _between,
     heel_track,
     passages,
     pressure_pulse,
@@ -847,3 +848,8 @@ def test_turned_tester_reads_the_same_friction():
     ]
     assert values[0] == pytest.approx(values[1], rel=1e-9)
     assert values[0] == pytest.approx(0.08, abs=0.004)
+
+
+def test_a_value_between_frames_is_on_the_line_up_to_the_last():
+    values = np.array([0.0, 1.0, 5.0])
+    assert [_between(values, *at) for at in ((0, 0.5), (1, 0.25), (2, 0.0))] == [0.5, 2.0, 5.0]

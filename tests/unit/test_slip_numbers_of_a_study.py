@@ -328,3 +328,8 @@ def test_a_heel_on_a_dry_floor_is_braked_as_said(speed, brake, wanted):
     assert drive == pytest.approx(0.2 * normal)
     fall = np.radians(50 * 0.1 * (2 if speed else 1))
     assert angle == pytest.approx([0.2, max(0.2 - fall, 0)])
+
+
+def test_a_step_that_never_brakes_ends_its_braking_at_once():
+    time = np.linspace(0, 0.6, 9)
+    assert GaitHistory("a", time, np.ones(9), np.full(9, -0.1)).end_of_braking == 0.0

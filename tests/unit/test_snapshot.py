@@ -82,6 +82,9 @@ def test_counts_and_whole_numbers_are_exact(tmp_path):
     assert differ(tmp_path, "a force of 66 N", "a force of 67 N")
     assert not differ(tmp_path, "a COF of 0.1234", "a COF of 0.1235")
     assert differ(tmp_path, "a COF of 0.1", "a COF of 0.2")
+    assert differ(tmp_path, "fastest 1e+09 rad/s", "fastest 2e+09 rad/s")
+    assert differ(tmp_path, "a gap of 1.5e-05 m", "a gap of 1.6e-05 m")
+    assert not differ(tmp_path, "a gap of 1.234e-05 m", "a gap of 1.235e-05 m")
 
 
 def test_a_message_is_its_text():

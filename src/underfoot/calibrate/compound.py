@@ -124,7 +124,7 @@ class Compound(Presentable):
             "time": Amount(self._time, "s"),
             "count": len(self.spectrum),
         }
-        if self.fit is None or self.tested is None:
+        if (fit := self.fit) is None:
             return (
                 Message(
                     "Young's modulus {modulus} after {time} of load; {count} terms as given.",
@@ -135,8 +135,8 @@ class Compound(Presentable):
             Message(
                 "Young's modulus {modulus} after {time} of load; spectrum of {count} terms, "
                 "tested from {rates: to }, fit {quality} (rms {rms:.1%}).",
-                **values, rates=[display(w / (2 * math.pi), "Hz") for w in self.tested],
-                quality=self.fit.quality, rms=self.fit.rms_residual,
+                **values, rates=[display(w / (2 * math.pi), "Hz") for w in fit.frequency_range],
+                quality=fit.quality, rms=fit.rms_residual,
             ),
         )  # fmt: skip
 

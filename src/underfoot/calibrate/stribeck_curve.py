@@ -165,7 +165,9 @@ def _gap(case: Case, pressure: float) -> float:
         return float(interface.pressure(gap)) - pressure
 
     highest = 20 * context.rq_value
-    if excess(0.0) <= 0 or excess(highest) >= 0:
-        return 0.0 if excess(0.0) <= 0 else highest
+    if excess(0.0) <= 0:
+        return 0.0
+    if excess(highest) >= 0:
+        return highest
     found: Any = brentq(excess, 0.0, highest, xtol=1e-12)
     return float(found)
