@@ -267,6 +267,9 @@ def test_print_supports_are_slender_thin_and_stand_out():
         keep, remarks = told._without_supports(found, all_of(found))
         assert keep.tolist() == [True, not out], (size, top)
         assert bool(remarks) == out
+    two = measured(BODY, ((50, 50, 23), (56, 55, 51)), ((70, 50, 23), (78, 59, 51)))
+    _, (remark,) = told._without_supports(two, all_of(two))
+    assert str(remark).startswith("2 slender bodies (print supports), up to 9 thick")
 
 
 def test_plates_are_flat_boxes_as_large_as_the_rest():

@@ -259,3 +259,17 @@ def test_a_spread_beside_an_si_number_is_one_too(heel):
     for mixed in ({"value": "50 cP", "uncertainty": 0.003}, {"value": 0.05, "uncertainty": True}):
         with pytest.raises(InputError, match="uncertainty"):
             heel.replace("contaminant.viscosity", mixed)
+
+
+@pytest.mark.parametrize(
+    ("speeds", "known"), [((0.1, 0.1, 0.3, 0.3), True), ((0.1, 0.1, 0.3), False)]
+)
+def test_readings_without_a_spread_have_that_of_their_repeats_where_each_is_repeated(speeds, known):
+    readings = [{"speed": v, "cof": 0.3 + 0.02 * n} for n, v in enumerate(speeds)]
+    case = load(HEEL).replace({"friction": {"model": "table", "readings": readings}})
+    law = case.friction.build(resolve_context(case))
+    assert law.speed.tolist() == [0.1, 0.3]
+    if known:
+        assert law.cof_deviation == pytest.approx([0.02 / 2**0.5] * 2)
+    else:
+        assert law.cof_deviation is None
