@@ -73,6 +73,7 @@ def told(contact: SteadySliding) -> dict[str, Any]:
     names = contact.__dataclass_fields__.keys() - left
     return {name: getattr(contact, name) for name in sorted(names)} | {
         "short": repr(contact),
+        "heads": (contact.table().title, contact.table().columns),
         "rows": [row[0] for row in contact.table().rows],
     }
 
