@@ -267,7 +267,7 @@ def _curves(tables: Sequence[FileTable]) -> list[RelaxationCurve]:
         modulus = table.si(table.needed("relaxation modulus"))
         for rows, temperature in _sets(table, time):
             t, e = time[rows], modulus[rows]
-            if t[0] > t[-1]:
+            if t.size > 1 and np.all(np.diff(t) < 0.0):
                 t, e = t[::-1], e[::-1]
             curves.append(RelaxationCurve(t, e, temperature, source=table.where))
     return sorted(curves, key=lambda curve: curve.temperature or 0.0)

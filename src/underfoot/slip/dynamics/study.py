@@ -187,7 +187,7 @@ class SlipStudy:
         if spread is None:
             return None
         cof = np.ravel(spread.draws)
-        parts = pa(*place.values())
+        parts = pa(MEAN_PRESSURE, SPEED_SCALE, place["film_thickness"])
         factors = cof * MEAN_PRESSURE / float(parts.adhesion + parts.hysteresis)
         low, high = np.maximum(np.quantile(factors, [0.005, 0.995]), 0.01)
         levels = np.geomspace(low, high, LEVELS)
