@@ -257,7 +257,7 @@ def splits() -> Iterator[str]:
             fit, rest = every[order[:60]], every[order[60:]]
             own = fit.points, fit.values, fit.errors
             one = fit_surrogate(str(goal), goal.unit, result.plan.dimensions, *own)
-            mean, deviation = one.predicted(rest.points)
+            mean, deviation = one.prediction(rest.points)
             error = rest.values - mean
             q2 = 1 - np.mean(error**2) / np.var(rest.values)
             rows.append((one.q2, q2, np.mean(np.abs(error) < 1.96 * deviation)))
@@ -308,19 +308,19 @@ def clog() -> Iterator[str]:
         return f"{text}: COF stated {stated:.4f}, is {cof:.4f}", cof
 
     grid = done('design = "grid"')
-    allowed = [one for one in grid.designs if grid.allowed([one])[0]]
+    allowed = [one for one in grid.designs if grid.meets_requirements([one])[0]]
     values = grid.goal_values(allowed)[:, 0]
     luckiest = int(np.argmax(values))
     text, most = judged("grid, best as run", grid, allowed[luckiest], values[luckiest])
     yield text
     believed = grid.best(1)[0]
-    means, _ = grid.believed([believed], grid.plan.goals)
+    means, _ = grid.goal_estimates([believed], grid.plan.goals)
     yield judged("grid, best by surrogate", grid, believed, means[0, 0])[0]
     better = []
     for seed in range(SEEDS):
         found = done(f'kind = "optimise"\nbudget = 72\nseed = {seed}')
         best = found.best(1)[0]
-        means, _ = found.believed([best], found.plan.goals)
+        means, _ = found.goal_estimates([best], found.plan.goals)
         text, cof = judged(f"seed {seed}", found, best, means[0, 0])
         better.append(cof > most)
         yield text
@@ -342,7 +342,7 @@ def treads() -> Iterator[str]:
         ]
         result = _best_tread(read_plan(EQUAL_LAND % (name, ratio, "\n".join(rows)), EXAMPLES))
         design = result.best(1)[0]
-        value = result.believed([design], result.plan.goals)[0][0, 0]
+        value = result.goal_estimates([design], result.plan.goals)[0][0, 0]
         yield _told(name, result, design, value)
         if best is None or value > best[0]:
             best = value, result, design
@@ -352,7 +352,7 @@ def treads() -> Iterator[str]:
     begin = family.plan.base.replace(start.changes)
     free = _best_tread(read_plan(text, EXAMPLES / "studies", base=begin))
     for design in free.best(3):
-        yield _told("free", free, design, free.believed([design], free.plan.goals)[0][0, 0])
+        yield _told("free", free, design, free.goal_estimates([design], free.plan.goals)[0][0, 0])
     chance = free.higher_cof(free.best(1)[0], start)
     yield f"the free tread has the higher COF in {100 * (chance or 0):.0f} of 100 draws"
     yield free.above_start()

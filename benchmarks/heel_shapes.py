@@ -78,7 +78,7 @@ def joint_draws() -> None:
             drawn = {
                 path: max(case.value(path) + rng.normal(0, sd), LEAST)
                 for path, sd in DEVIATIONS.items()
-                if case.sourced(path).value is not None
+                if case.sourced_value(path).value is not None
             }
             try:
                 here.append(mean_odds(case.replace(drawn)) - own)

@@ -82,7 +82,7 @@ def main() -> None:
         drawn = Path(folder) / "drawn.stl"
         for place in PLACES:
             drawn.unlink(missing_ok=True)
-            write_sole(replace(shape, tread=tread.moved((place, 0.0))), drawn)
+            write_sole(replace(shape, tread=tread.shift_grooves((place, 0.0))), drawn)
             told("places", f"{1e3 * place:g} mm further on", numbers(base, drawn))
         own = seen["places"][-1]
         for kind, path, how in dressed(drawn):

@@ -136,10 +136,10 @@ def previews() -> dict[str, float]:
 
     case = Case.load(CASE)
     solved = Continuation(case)
-    solved.continued({})
+    solved.continue_march({})
     seconds, cof, load = [], 0.0, 0.0
     for change in CHANGES:
-        seen, full = solved.continued(change), Continuation(case.replace(change)).values
+        seen, full = solved.continue_march(change), Continuation(case.replace(change)).values
         seconds.append(seen.seconds)
         cof = max(cof, 100 * (seen.values["cof"] / full["cof"] - 1), key=abs)
         load = max(load, 100 * (seen.values["fluid_load"] / full["fluid_load"] - 1), key=abs)

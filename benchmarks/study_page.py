@@ -98,7 +98,7 @@ def made(folder: Path, text: str, count: int, ended: float = 0.9) -> Study:
     """Return a study in a folder with so many cases set, of which a share has ended."""
     plan = read_plan(text % count, EXAMPLES)
     study = Study(plan, folder)
-    store = study.store = Store.made(folder)
+    store = study.store = Store.open_folder(folder)
     store.adopt(plan)
     listed = list(jobs(plan, count))
     store.add_batch(store.jobs(), listed)

@@ -160,7 +160,7 @@ def main() -> None:
     print(f"{CASES} made-up cases, 40 numbers and 500 draws each; {WORKERS} workers")
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "study"
-        store = Store.made(folder)
+        store = Store.open_folder(folder)
         store.adopt(read_plan(TEXT, EXAMPLES))
         began = time.process_time()
         store.add_batch(store.jobs(), jobs(CASES))

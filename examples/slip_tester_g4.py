@@ -28,7 +28,7 @@ def main(quick: bool = False) -> None:
             case = Case.load(Path(__file__).with_name(f"{shoe}_{fluid}.toml"))
             result = run(case, quick=quick)
             name = f"fluid_load_{shoe}_{fluid}"
-            printed = entry.sourced(name, "N").value if name in entry.values else None
+            printed = entry.sourced_value(name, "N").value if name in entry.values else None
             sensor, load = result.value("fluid_load_sensor"), result.value("fluid_load")
             peak = result.value("peak_fluid_pressure_sensor") / 1e3
             cof = result.scalars["cof"]

@@ -199,9 +199,9 @@ WAYS = {
     "vertex": (
         "vertex of an STL → outsole",
         _vertex,
-        "MeshFile Body Mesh _Bodies Found View Shape TreadMap SoleSurface FileOutsole",
+        "MeshFile Mesh _Bodies Found View Shape TreadMap SoleSurface FileOutsole",
     ),
-    "sample": ("C3D sample → `Trial`", _sample, "C3DFile Draft _RawPlate Trial"),
+    "sample": ("C3D sample → `Trial`", _sample, "C3DFile RecordingDraft _RawPlate Trial"),
     "trial": (
         "`Trial` → RCOF",
         _trial,
@@ -212,7 +212,7 @@ WAYS = {
         _scan,
         "Heights Scan ProfileSpectrum IsotropicSpectrum Texture Directions ProfileRoughness",
     ),
-    "reading": ("tester reading → posterior", _reading, "FloorReading JointDraws FloorCalibration"),
+    "reading": ("tester reading → posterior", _reading, "FloorReading PlaceDraws FloorCalibration"),
     "slider": ("slider → answer in the app", _slider, "Input Case Continuation Preview"),
 }
 """Key: name, what prepares a cheap run and returns it, types of the value."""

@@ -41,7 +41,7 @@ def sweep(name: str) -> None:
     """Write storage and loss modulus at nine temperatures."""
     shift = WlfShift(4.57, 113.6, 25 + KELVIN)
     rubber = power_law_spectrum(1.0, 0.12, shortest_time=1e-14, longest_time=1e8)
-    rubber = rubber.scaled(5e6 / float(rubber.storage_modulus(2 * np.pi)))
+    rubber = rubber.scale_moduli(5e6 / float(rubber.storage_modulus(2 * np.pi)))
     random, rows = np.random.default_rng(25), ["T (degC),f (Hz),E' (MPa),E'' (MPa)"]
     for celsius in range(-40, 41, 10):
         for hertz in np.geomspace(0.1, 100, 13):

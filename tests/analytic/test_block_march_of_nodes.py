@@ -262,4 +262,4 @@ def test_roughness_of_the_micro_model_is_that_of_the_catalogue():
     catalogue = Catalogue.load()
     for name, height in FLOOR_ROUGHNESS.items():
         entry = catalogue.entry("floor", f"ceramic_{name}_g1")
-        assert entry.sourced("roughness.rz", "m").value == pytest.approx(height)
+        assert entry.sourced_value("roughness.rz", "m").value == pytest.approx(height)

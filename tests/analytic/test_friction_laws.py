@@ -269,7 +269,7 @@ def test_breaches_of_pressure_and_speed():
         lambda: fluid("a", 0.0, 0.3),
         lambda: boundary_friction_at(-1.0, (fluid("a", 1e-3, 0.3), fluid("b", 1e-2, 0.2))),
         lambda: boundary_friction_at(1e-3, (fluid("a", 1e-3, 0.3),)),
-        lambda: StribeckLaw.measured(fluid("canola oil", 0.0746, 0.1)),
+        lambda: StribeckLaw.from_measured(fluid("canola oil", 0.0746, 0.1)),
     ],
 )
 def test_bad_input(build):
@@ -287,7 +287,7 @@ def test_bad_fields(pressure):
 def test_dry_floor_needs_given_friction():
     """The report prints no dry friction of any pair: nothing to take."""
     with pytest.raises(InputError, match="dry floor") as caught:
-        BoundaryLaw.measured(None)
+        BoundaryLaw.from_measured(None)
     assert "adhesion and hysteresis" in caught.value.remedy
 
 

@@ -388,8 +388,8 @@ def test_a_compound_and_a_floor_of_the_catalogue_are_drawn_over_their_spread():
     assert (pair.polymer, pair.shore_a, pair.shore_a_deviation) == ("NBR", 66, 5)
     assert pair.family == "detergent"
     assert pair.floor_rq[1] > 2 * pair.floor_rq[0]
-    wide = pair.drawn(packaged_pair_draws(), 0)["film"]
-    exact = replace(pair, shore_a_deviation=0.0).drawn(packaged_pair_draws(), 0)["film"]
+    wide = pair.draw_inputs(packaged_pair_draws(), 0)["film"]
+    exact = replace(pair, shore_a_deviation=0.0).draw_inputs(packaged_pair_draws(), 0)["film"]
     assert not np.array_equal(wide, exact)
 
 

@@ -288,7 +288,7 @@ KNOWN = Pair(60.0, (8e-6, 8e-6), (2e-6, 2e-6), "aqueous")
 
 
 def test_errors_of_laboratory_dry_part_and_pair_have_their_own_spread_and_draws():
-    drawn = KNOWN.drawn(DRAWS, 3)
+    drawn = KNOWN.draw_inputs(DRAWS, 3)
     errors = np.log([drawn[name] for name in ("laboratory", "rest", "pair")])
     errors[1] = np.log(drawn["rest"] - drawn["film"])
     assert errors.std(axis=1) == pytest.approx([0.3, 0.5, 0.1], rel=0.02)
@@ -296,14 +296,14 @@ def test_errors_of_laboratory_dry_part_and_pair_have_their_own_spread_and_draws(
 
 
 def test_hardness_and_roughness_that_are_not_known_are_drawn():
-    exact = KNOWN.drawn(DRAWS, 3)["film"]
+    exact = KNOWN.draw_inputs(DRAWS, 3)["film"]
     assert np.ptp(exact) == 0.0
-    spread = replace(KNOWN, shore_a_deviation=3.0, polymer="P").drawn(DRAWS, 3)["film"]
-    one_more = replace(KNOWN, shore_a=63.0).drawn(DRAWS, 3)["film"][0]
+    spread = replace(KNOWN, shore_a_deviation=3.0, polymer="P").draw_inputs(DRAWS, 3)["film"]
+    one_more = replace(KNOWN, shore_a=63.0).draw_inputs(DRAWS, 3)["film"][0]
     slope = np.log(exact[0] / one_more)
     assert np.log(spread).std() == pytest.approx(slope, rel=0.03)
     dry = replace(KNOWN, family="dry", sole_rq=(1e-12, 1e-12), floor_rq=(1e-6, 100e-6))
-    slope = dry.drawn(DRAWS, 3)["full_contact"] / FULL_CONTACT
+    slope = dry.draw_inputs(DRAWS, 3)["full_contact"] / FULL_CONTACT
     quartiles = np.quantile(slope, [0.25, 0.5, 0.75])
     expected = [real_slope(1e-6 * 100**share) for share in (0.25, 0.5, 0.75)]
     assert quartiles == pytest.approx(expected, rel=0.01)

@@ -59,6 +59,13 @@ def test_a_measured_spectrum_gives_the_asperities_of_the_surface_room():
     assert found.slope == pytest.approx(exact.slope, rel=2e-3)
     with pytest.raises(RangeError, match="no spectrum on one side"):
         spectrum_scale(1e-6, spectrum)
+    for last, enough in ((-3, True), (-2, False), (1, True), (0, False)):  # two on either side
+        wave = 2 * math.pi / (1.001 * q[last])
+        if enough:
+            assert spectrum_scale(wave, spectrum).radius > 0
+        else:
+            with pytest.raises(RangeError, match="no spectrum on one side"):
+                spectrum_scale(wave, spectrum)
 
 
 def test_the_film_is_that_of_a_hertz_contact_with_the_spots_pressure():

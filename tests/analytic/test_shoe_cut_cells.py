@@ -35,7 +35,7 @@ def heel(tread=None, **changes):
     shift=st.tuples(st.floats(0, 8), st.floats(0, 8)),
 )
 def test_cells_share_out_their_area_and_lugs_get_theirs(pattern, lug, shift):
-    tread = Tread(pattern, lug * MM, 3 * MM, 3 * MM).moved((shift[0] * MM, shift[1] * MM))
+    tread = Tread(pattern, lug * MM, 3 * MM, 3 * MM).shift_grooves((shift[0] * MM, shift[1] * MM))
     coarse, fine = (heel_map(heel(tread), shoe_angle=0.0, spacing=s * MM) for s in (1.0, 0.25))
     for area in (coarse.cut.area, coarse.cut.film_area):
         assert area.sum() == pytest.approx(area.size, rel=1e-12)

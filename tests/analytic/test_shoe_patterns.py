@@ -70,7 +70,7 @@ def test_a_groove_takes_its_area_and_the_tread_s_depth_at_any_angle():
 def test_grooves_move_with_the_lugs_that_they_part():
     tread = Tread("hexagons", 6e-3, 2e-3, 2e-3, grooves=(Groove((3e-3, 0.0), 1e-3, 7e-3, 0.3),))
     x, y = np.meshgrid(np.linspace(-0.02, 0.02, 81), np.linspace(-0.02, 0.02, 81))
-    moved = tread.moved((2e-3, -3e-3)).channel_distance(x + 2e-3, y - 3e-3)
+    moved = tread.shift_grooves((2e-3, -3e-3)).channel_distance(x + 2e-3, y - 3e-3)
     assert moved == pytest.approx(tread.channel_distance(x, y), abs=1e-12)
 
 

@@ -144,7 +144,7 @@ def test_walking_at_one_angle_alone_is_the_plane_of_that_angle(monkeypatch):
     monkeypatch.setattr(walking, "LANDING", ((math.radians(7), 1.0),))
     x = np.linspace(0.0, HEEL.length, 50)
     walked, ground = (
-        HEEL.worn(wear).land_height(x, np.zeros(x.size))
+        HEEL.with_wear(wear).land_height(x, np.zeros(x.size))
         for wear in (WalkingWear(1.3e-3), WearPlane(1.3e-3, math.radians(7)))
     )
     assert np.allclose(walked, ground, atol=2e-6)

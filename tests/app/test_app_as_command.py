@@ -66,7 +66,7 @@ def typed_in(project, name, values):
     """Give a variant what a person types in its fields."""
     for path, text in values.items():
         each = INPUTS[path]
-        project.change(name, {path: each.read(text, "si", comma="," in text)})
+        project.change(name, {path: each.read_typed(text, "si", comma="," in text)})
 
 
 @pytest.fixture

@@ -137,7 +137,7 @@ def test_hardness_alone(tmp_path):
     (tmp_path / "case.toml").write_text(CASE + '[shoe.material]\nfile = "h.toml"\n')
     case = Case.load(tmp_path / "case.toml")
     assert case.value("shoe.material.shore_a") == 90
-    assert case.shoe.material.sourced("shore_a").uncertainty == 5
+    assert case.shoe.material.sourced_value("shore_a").uncertainty == 5
 
 
 def test_one_temperature_and_rates_never_tested_are_told(tmp_path):

@@ -170,4 +170,4 @@ def test_finite_strain_and_settings_of_the_elements_come_from_the_case(small):
     assert case.finite_strain
     assert case.settings is not None
     assert case.settings.hourglass == "viscous"
-    assert "finite compression" in case.described()[0]
+    assert "finite compression" in case.describe_case()[0]

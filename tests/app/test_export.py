@@ -300,7 +300,7 @@ def removed_volume(shape):
 def test_the_worn_solid_has_lost_what_the_map_has(wear, within, tmp_path):
     from underfoot.shoe.parametric import sole_solid, write_sole
 
-    worn = HEEL.worn(wear)
+    worn = HEEL.with_wear(wear)
     made = sole_solid(worn)
     lost = sole_solid(HEEL).volume - made.volume
     assert lost == pytest.approx(removed_volume(worn), rel=within)

@@ -27,7 +27,7 @@ def test_the_case_of_the_guide_loads_and_its_python_does_what_it_says(tmp_path, 
     assert without_file["case"].motion.speed == 0.5
     assert without_file["case"].shoe.tread.depth == 1.1e-3
     assert names["case"].contaminant.viscosity == 0.07
-    assert names["case"].sourced("contaminant.viscosity").uncertainty == 0.003
+    assert names["case"].sourced_value("contaminant.viscosity").uncertainty == 0.003
     assert names["thin"].contaminant.viscosity == 0.041
     assert Case.load("thin.toml") == names["thin"]
 

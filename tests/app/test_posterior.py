@@ -43,7 +43,7 @@ def study(tmp_path):
     """Return a study all of whose cases are finished with made-up loads."""
     plan = read_plan(TEXT, EXAMPLES)
     made = Study(plan, tmp_path)
-    made.store = Store.made(tmp_path)
+    made.store = Store.open_folder(tmp_path)
     made.store.adopt(plan)
     while made._begin_next():
         for job in made.store.jobs():

@@ -363,7 +363,7 @@ def worn_series():
         tread=Tread("grid", 9e-3, 5e-3, 3e-3),
     )  # fmt: skip
     depths = (0.0, 1e-3, 2e-3)
-    soles = [heel.worn(WearPlane(depth) if depth else None) for depth in depths]
+    soles = [heel.with_wear(WearPlane(depth) if depth else None) for depth in depths]
     failed = CaseOutcome(
         "", "", {"cof": SourcedValue(None, "1")}, {}, Status.NOT_CONVERGED, "", (), (), 0.0
     )

@@ -116,7 +116,7 @@ def in_a_file(path, text, unit, si, comma):
 
 
 def in_a_field(path, text, unit, si, comma):
-    written = Input(path, unit).read(text, "si", comma=comma)
+    written = Input(path, unit).read_typed(text, "si", comma=comma)
     return to_si(written, si, where=path)
 
 

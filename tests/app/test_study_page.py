@@ -33,7 +33,7 @@ def page(tmp_path_factory):
     folder = tmp_path_factory.mktemp("study")
     base = load(EXAMPLES / "work_shoe_full_tread_glycerol.toml")
     study = Study(read_plan(STUDY, folder, base=base), folder)
-    study.store = Store.made(folder)
+    study.store = Store.open_folder(folder)
     study.store.adopt(study.plan)
     jobs = list(next_batch(study.plan, study.result()))
     study.store.add_batch(study.store.jobs(), jobs)

@@ -40,7 +40,7 @@ def test_jobs_run_in_order_and_say_what_went_wrong(tmp_path):
         tasks += [jobs.submit("b", HERE + name) for name in ("refused", "killed")]
         tasks.append(jobs.submit("c", HERE + "doubled", 3))
         for task in tasks:
-            await jobs.finished(task)
+            await jobs.wait_for(task)
         assert jobs.latest("x", HERE + "doubled") is tasks[1]
         return tasks
 
@@ -64,13 +64,13 @@ def test_a_run_does_not_wait_for_a_study(tmp_path, monkeypatch):
         study, second = (jobs.submit("study", "beside:study") for _ in range(2))
         while study.stage != "deaf":
             await asyncio.sleep(0.01)
-        ran = await jobs.finished(jobs.submit("run", HERE + "doubled", 2))
+        ran = await jobs.wait_for(jobs.submit("run", HERE + "doubled", 2))
         assert (ran.answer, study.state, second.state) == (4, "running", "waiting")
         jobs.cancel(study)
         while second.stage != "deaf":
             await asyncio.sleep(0.01)
         jobs.cancel(second)
-        await jobs.finished(second)
+        await jobs.wait_for(second)
 
     asyncio.run(with_jobs(tmp_path, work))
 
@@ -84,7 +84,7 @@ def test_cancel_is_heeded_at_once_even_by_a_job_that_does_not_listen(tmp_path):
         began = time.monotonic()
         jobs.cancel(waiting)
         jobs.cancel(task)
-        await jobs.finished(task)
+        await jobs.wait_for(task)
         return task, waiting, time.monotonic() - began
 
     task, waiting, took = asyncio.run(with_jobs(tmp_path, work))
@@ -95,7 +95,7 @@ def test_cancel_is_heeded_at_once_even_by_a_job_that_does_not_listen(tmp_path):
 @pytest.mark.usefixtures("path")
 def test_a_restart_shows_what_finished_and_what_was_interrupted(tmp_path):
     async def work(jobs):
-        await jobs.finished(jobs.submit("one", HERE + "doubled", 1, about="x"))
+        await jobs.wait_for(jobs.submit("one", HERE + "doubled", 1, about="x"))
         long, _ = (jobs.submit("two", HERE + "deaf", 60, about=a) for a in "yz")
         while long.stage != "deaf":
             await asyncio.sleep(0.01)
@@ -107,7 +107,7 @@ def test_a_restart_shows_what_finished_and_what_was_interrupted(tmp_path):
     assert {task.about: task.state for task in JobQueue(tmp_path).tasks.values()} == states
 
     async def once_more(jobs):
-        return await jobs.finished(jobs.again(jobs.tasks[1]))
+        return await jobs.wait_for(jobs.again(jobs.tasks[1]))
 
     assert asyncio.run(with_jobs(tmp_path, once_more)).answer == 2
 
@@ -139,7 +139,7 @@ def test_a_project_that_was_copied_computes_in_the_copy(tmp_path):
 
     async def submitted(jobs):
         task = jobs.submit("a", HERE + "doubled", str(here / "variants" / "a.toml"), about="a")
-        await jobs.finished(task)
+        await jobs.wait_for(task)
         return task.arguments
 
     async def read(jobs):
@@ -162,11 +162,11 @@ def test_what_a_person_waits_for_comes_first_and_all_can_be_stopped(tmp_path):
             await asyncio.sleep(0.01)
         one, two = (jobs.submit("one", HERE + "doubled", n, first=True) for n in (1, 2))
         jobs.cancel(first)
-        await jobs.finished(two)
+        await jobs.wait_for(two)
         assert one.ended <= two.began
         jobs.cancel_all(HERE + "deaf")
         for task in (first, *rest):
-            await jobs.finished(task)
+            await jobs.wait_for(task)
         return one, rest
 
     one, rest = asyncio.run(with_jobs(tmp_path, work))

@@ -454,7 +454,7 @@ def test_two_hundred_random_actions_lose_no_variant_and_raise_no_error(app):
         from underfoot.app.project import Project
 
         project = Project(app.folder)
-        assert made == {*project.variants(), *project.removed()}
+        assert made == {*project.variants(), *project.removed_variants()}
         for name in project.variants():
             project.case(name)
 

@@ -89,7 +89,7 @@ def test_removed_variants_come_back(project):
     project.remove("one")
     assert project.variants() == []
     again = Project(project.folder)
-    assert again.removed() == ["one"]
+    assert again.removed_variants() == ["one"]
     again.restore("one")
     assert speed(again) == 0.5
 
@@ -164,7 +164,7 @@ def test_lines_of_other_programs_in_the_history_are_left_out(project):
     history.write_text("\n".join([*foreign, history.read_text(), *odd, ""]))
     again = Project(project.folder)
     assert again.variants() == project.variants()
-    assert again.removed() == []
+    assert again.removed_variants() == []
     assert again.text("one") == project.text("one")
 
 

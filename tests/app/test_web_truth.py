@@ -298,7 +298,7 @@ def test_two_tabs_show_no_number_of_other_inputs(app, project):
         again = Project(app.folder)
         assert {json.loads(line)["variant"] for line in history} == {
             *again.variants(),
-            *again.removed(),
+            *again.removed_variants(),
         }
 
 

@@ -1,6 +1,8 @@
 """Reading heights: a real stylus file (MIT, see tests/data) and files well and badly formed."""
 
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -213,3 +215,19 @@ def test_files_that_are_none(tmp_path):
         read_dektak(_write(tmp_path, "Scan Parameters\nLateral um\n1,2"))
     with pytest.raises(DataError, match="length"):
         read_profile(_write(tmp_path, "1 2\n2 3\n"), length_unit="kg", height_unit="um")
+
+
+def test_a_map_of_another_library_keeps_which_side_is_which(tmp_path, monkeypatch):
+    """A stand-in for the library: 3 by 2 points, 6 µm by 8 µm, heights in nm."""
+    heights = np.array([[1.0, 2.0], [3.0, 5.0], [8.0, 13.0]])
+    topography = SimpleNamespace(
+        heights=lambda: heights, dim=2, unit="nm", physical_sizes=(6000.0, 8000.0),
+        is_periodic=True,
+    )  # fmt: skip
+    library = SimpleNamespace(read_topography=lambda _: topography)
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", library)
+    read = read_surface(_write(tmp_path, "x\0", "a.plux"))
+    assert isinstance(read, HeightMap)
+    assert read.heights == pytest.approx(1e-9 * heights)
+    assert read.spacings == pytest.approx((2e-6, 4e-6))
+    assert read.periodic

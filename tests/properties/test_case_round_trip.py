@@ -96,7 +96,7 @@ def test_case_to_toml_to_case_keeps_the_hash(case):
     assert complete.hash == case.hash
     assert complete.name == case.name
     for path in ("motion.speed", "contaminant.viscosity", "shoe.material.shore_a"):
-        ours, theirs = case.sourced(path), complete.sourced(path)
+        ours, theirs = case.sourced_value(path), complete.sourced_value(path)
         assert ours.value == theirs.value
         assert ours.assumed == theirs.assumed
 

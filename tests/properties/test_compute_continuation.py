@@ -20,7 +20,7 @@ def solved():
 
 
 def test_no_change_is_the_march_itself(solved):
-    same = solved.continued({})
+    same = solved.continue_march({})
     assert same.status is Status.PREVIEW
     assert not same.status.usable
     for name, value in solved.values.items():
@@ -35,7 +35,7 @@ def test_no_change_is_the_march_itself(solved):
     [{"contaminant.viscosity": "150 cP"}, {"shoe.material.shore_a": 54}],
 )
 def test_a_change_is_within_one_percent_and_its_own_error(solved, change):
-    seen, full = solved.continued(change), Continuation(CASE.replace(change)).values
+    seen, full = solved.continue_march(change), Continuation(CASE.replace(change)).values
     assert seen.values["cof"] == pytest.approx(full["cof"], rel=0.01)
     assert seen.values["fluid_load"] == pytest.approx(full["fluid_load"], rel=0.05)
     for name in ("cof", "fluid_load"):
@@ -56,7 +56,7 @@ def whole(cof, load):
 
 def test_beside_a_whole_run_it_is_a_change_of_that_run(solved):
     run = whole((0.14, 0.002), (60.0, 7.0))
-    same = of_run(solved, solved.continued({}), run)
+    same = of_run(solved, solved.continue_march({}), run)
     assert same.values["cof"] == pytest.approx(0.14)
     assert same.cof.value == pytest.approx(0.14)
     assert same.values["fluid_load"] == pytest.approx(60.0)
@@ -64,7 +64,10 @@ def test_beside_a_whole_run_it_is_a_change_of_that_run(solved):
     assert same.errors["cof"] >= 1.96 * 2**0.5 * 0.002
     assert same.errors["fluid_load"] >= 1.96 * 2**0.5 * 7.0
     change = {"contaminant.viscosity": "150 cP"}
-    alone, beside = solved.continued(change), of_run(solved, solved.continued(change), run)
+    alone, beside = (
+        solved.continue_march(change),
+        of_run(solved, solved.continue_march(change), run),
+    )
     share = alone.values["cof"] / solved.values["cof"]
     assert beside.values["cof"] == pytest.approx(0.14 * share)
     with pytest.raises(InputError, match="wear has no preview"):
@@ -72,9 +75,9 @@ def test_beside_a_whole_run_it_is_a_change_of_that_run(solved):
 
 
 def test_the_film_never_bears_more_than_the_load(solved):
-    seen = of_run(solved, solved.continued({}), whole((0.14, 0.001), (480.0, 1.0)))
+    seen = of_run(solved, solved.continue_march({}), whole((0.14, 0.001), (480.0, 1.0)))
     assert seen.values["fluid_load"] == pytest.approx(480.0)
-    thicker = solved.continued({"contaminant.viscosity": "300 cP"})
+    thicker = solved.continue_march({"contaminant.viscosity": "300 cP"})
     with pytest.raises(ConvergenceError, match="too little"):
         of_run(solved, thicker, whole((0.14, 0.02), (480.0, 1.0)))
 
@@ -89,12 +92,12 @@ def test_the_march_is_kept_for_the_next_preview():
 
 def test_another_plan_of_the_tread_is_refused(solved):
     with pytest.raises(InputError, match="plan of the sole"):
-        solved.continued({"shoe.tread.lug_width": "7 mm"})
+        solved.continue_march({"shoe.tread.lug_width": "7 mm"})
 
 
 def test_a_motion_with_a_history_is_refused(solved):
     with pytest.raises(InputError, match="history"):
-        solved.continued({"motion": "heel_strike_to_flat"})
+        solved.continue_march({"motion": "heel_strike_to_flat"})
     with pytest.raises(InputError, match="history"):
         Continuation(CASE.replace("motion", "heel_strike_to_flat"))
 
@@ -110,8 +113,8 @@ def test_the_shoe_angle_and_the_speed_of_a_flat_sole_are_refused():
     solved = Continuation(case)
     for change in ({"motion.shoe_angle": "10.7 deg"}, {"motion.speed": "0.33 m/s"}):
         with pytest.raises(InputError, match="without lugs"):
-            solved.continued(change)
-    assert solved.continued({"motion.normal_force": "480 N"}).values["cof"] > 0
+            solved.continue_march(change)
+    assert solved.continue_march({"motion.normal_force": "480 N"}).values["cof"] > 0
     whole = {name: SourcedValue(value) for name, value in solved.values.items()}
     with pytest.raises(InputError, match="without lugs"):
         preview_of_run(case, {"motion.normal_force": "480 N"}, whole)

@@ -175,12 +175,14 @@ def test_a_preview_is_as_unsure_as_a_run():
     march = Continuation(case)
     run_spread = run(case.replace("numerics.tread_positions", 1), quick=True)["cof"].uncertainty
     assert march.cof.uncertainty == pytest.approx(run_spread, rel=0.1)
-    seen = march.continued({"contaminant.viscosity": "150 cP"})
+    seen = march.continue_march({"contaminant.viscosity": "150 cP"})
     assert (seen.cof.uncertainty or 0) > 1.2 * _known(case)
 
 
 def _known(case: Case) -> float:
-    seen = Continuation(case.replace(FACTOR, 2.0)).continued({"contaminant.viscosity": "150 cP"})
+    seen = Continuation(case.replace(FACTOR, 2.0)).continue_march(
+        {"contaminant.viscosity": "150 cP"}
+    )
     return seen.cof.uncertainty or 0.0
 
 

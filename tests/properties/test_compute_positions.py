@@ -78,7 +78,7 @@ def test_a_pattern_repeats_after_each_period(pattern, angle, offset):
     )
     at = tread.channel_distance(*POINTS)
     for period in tread.periods:
-        moved = tread.moved((float(period[0]), float(period[1])))
+        moved = tread.shift_grooves((float(period[0]), float(period[1])))
         assert moved.channel_distance(*POINTS) == pytest.approx(at, abs=1e-9)
 
 
@@ -270,7 +270,7 @@ def test_draws_take_every_position_and_its_spread_is_named():
     whole = 0.0002 + 0.0004 + 0.000025
     assert sampled.share["tread_position"] == pytest.approx(0.0002 / whole, rel=0.1)
     assert sampled.share["shoe_angle"] == pytest.approx(0.000025 / whole, rel=0.1)
-    film = positions.drawn("fluid_load", 4000)  # each position in turn, its odds moved
+    film = positions.draw_scalar("fluid_load", 4000)  # each position in turn, its odds moved
     moved = np.log(film / (1e6 - film) * (1e6 / np.tile(values["fluid_load"], 1000) - 1))
     assert np.std(moved) == pytest.approx(0.05, rel=0.01)
     assert np.mean(moved) == pytest.approx(0.0, abs=1e-4)
@@ -282,16 +282,16 @@ def test_what_the_angle_adds_is_its_own_standard_deviation_of_every_number():
     made = TreadPositions(
         places(np.eye(2), 2), values, 0, own, by_angle={"cof": -0.01}, film_by_angle=0.05
     )
-    drawn, film = made.drawn("cof", 4000), made.drawn("fluid_load", 4000)
+    drawn, film = made.draw_scalar("cof", 4000), made.draw_scalar("fluid_load", 4000)
     assert drawn.mean() == pytest.approx(0.3, abs=1e-5)
     assert drawn.std() == pytest.approx(0.01, rel=1e-3)
     assert np.ptp(drawn) == pytest.approx(2 * math.sqrt(3) * 0.01, rel=1e-2)
     odds = np.log(film / (100 - film))
     assert odds.mean() == pytest.approx(math.log(0.25), abs=1e-4)
     assert odds.std() == pytest.approx(0.05, rel=1e-3)
-    assert made.drawn("contact_load", 100) == pytest.approx(80.0)  # what it adds nothing to
+    assert made.draw_scalar("contact_load", 100) == pytest.approx(80.0)  # what it adds nothing to
     numbers = {name: SourcedValue(value, "1") for name, value in own.items()}
-    assert made.averaged(numbers)["cof_shoe_angle"].value == pytest.approx(0.01)
+    assert made.average_numbers(numbers)["cof_shoe_angle"].value == pytest.approx(0.01)
 
 
 def test_the_angle_adds_half_of_what_toe_up_and_toe_down_differ_by(bars):
@@ -332,7 +332,7 @@ def test_the_offset_of_a_case_moves_the_pattern_with_its_sipes(bars):
     slits = Sipes(1 * MM, 2 * MM, 5 * MM, 0.3)
     tread = Tread("grid", 6 * MM, 4 * MM, 3 * MM, sipes=slits)
     x, y = POINTS
-    back = tread.moved((2 * MM, 3 * MM)).slit_distance(x + 2 * MM, y + 3 * MM)
+    back = tread.shift_grooves((2 * MM, 3 * MM)).slit_distance(x + 2 * MM, y + 3 * MM)
     assert back == pytest.approx(tread.slit_distance(x, y), abs=1e-12)
 
 
@@ -380,7 +380,7 @@ def test_the_tread_of_a_file_turns_as_one_that_was_drawn_so(bars):
 
     shape, cell = new_sole(bars), 0.25 * MM
     periods, pivot, yaw, shift = shape.tread.periods, (20 * MM, 0.0), math.radians(1), (2 * MM, 0)
-    turned = replace(shape.tread.moved(shift), yaw=yaw, pivot=pivot)
+    turned = replace(shape.tread.shift_grooves(shift), yaw=yaw, pivot=pivot)
     drawn = heel_surface(replace(shape, tread=turned), spacing=cell)
     moved = moved_tread(heel_surface(shape, spacing=cell), shift, periods, yaw=yaw, pivot=pivot)
     assert np.count_nonzero(moved.land != drawn.land) < 0.02 * drawn.land.sum()
@@ -712,7 +712,7 @@ def test_a_place_that_does_not_converge_is_said_first_and_widens_the_error(monke
     one = TreadPositions(places(np.eye(2), 1), alone, 3, own)
     assert "3 did not converge" in one.labels()["tread_position"]
     assert "3 of 4" in one.labels()["positions_left_out"]
-    assert one.drawn("cof", 3).tolist() == [0.1] * 3
+    assert one.draw_scalar("cof", 3).tolist() == [0.1] * 3
 
 
 @pytest.mark.slow
@@ -730,7 +730,7 @@ def test_a_sole_whose_bars_float_converges_at_every_place(tmp_path):
 
     base = bars_in_glycerol({"motion.duration": "0.12 s"})
     shape = new_sole(base)
-    moved = replace(shape, tread=shape.tread.moved((6 * MM, 0.0)))
+    moved = replace(shape, tread=shape.tread.shift_grooves((6 * MM, 0.0)))
     path = write_sole(moved, tmp_path / "bars.stl").path
     parts = {"shoe.heel": None, "shoe.tread": None, "shoe.sole": None}
     case = base.replace({**parts, "shoe.outsole": {"file": str(path)}})

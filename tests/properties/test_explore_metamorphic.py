@@ -128,22 +128,22 @@ def surrogate():
 
 def test_a_surrogate_knows_no_unit(surrogate):
     large = fit_surrogate("cof", "1", BOX, POINTS, 1e3 * VALUES)
-    for one, other in zip(surrogate.predicted(NEW), large.predicted(NEW), strict=True):
+    for one, other in zip(surrogate.prediction(NEW), large.prediction(NEW), strict=True):
         np.testing.assert_allclose(other, 1e3 * one, rtol=1e-3)
     assert large.error == pytest.approx(1e3 * surrogate.error, rel=1e-3)
     assert (large.q2, large.stretch) == pytest.approx((surrogate.q2, surrogate.stretch), rel=1e-3)
 
 
 def test_a_surrogate_knows_no_order_of_runs_nor_of_inputs(surrogate):
-    mean, deviation = surrogate.predicted(NEW)
+    mean, deviation = surrogate.prediction(NEW)
     order = np.random.default_rng(8).permutation(32)
     mixed = fit_surrogate("cof", "1", BOX, POINTS[order], VALUES[order])
     turned = fit_surrogate("cof", "1", BOX[::-1], POINTS[:, ::-1], VALUES)
     back = fit_surrogate("cof", "1", BOX, 1 - POINTS, VALUES)
     for other, places in ((mixed, NEW), (turned, NEW[:, ::-1]), (back, 1 - NEW)):
-        np.testing.assert_allclose(other.predicted(places)[0], mean, rtol=0.01)
+        np.testing.assert_allclose(other.prediction(places)[0], mean, rtol=0.01)
         # what was left out together differs
-        np.testing.assert_allclose(other.predicted(places)[1], deviation, rtol=0.35)
+        np.testing.assert_allclose(other.prediction(places)[1], deviation, rtol=0.35)
         assert other.q2 == pytest.approx(surrogate.q2, abs=0.01)
 
 

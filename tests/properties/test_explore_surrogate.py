@@ -80,7 +80,7 @@ def test_stated_errors_are_those_of_fresh_runs(function, noise, tells):
         values = function(points) + errors * generator.standard_normal(110)
         stated_errors = 2 * errors[:60] if tells else None  # half of it is common to all runs
         one = fit_surrogate("cof", "1", four, points[:60], values[:60], stated_errors)
-        mean, deviation = one.predicted(points[60:])
+        mean, deviation = one.prediction(points[60:])
         rest = values[60:] - mean
         stated.append(one.q2)
         held.append(1 - np.sum(rest**2) / np.sum((values[60:] - values[60:].mean()) ** 2))
@@ -103,7 +103,7 @@ def test_a_run_counts_by_its_noise():
             fit_surrogate("cof", "1", (DEPTH, SPEED), points, values, one) for one in (None, errors)
         )
         missed.append([np.mean((one.mean(fresh) - true) ** 2) for one in (blind, told)])
-        deviation = told.predicted(fresh, noise=False)[1]
+        deviation = told.prediction(fresh, noise=False)[1]
         inside.append(np.abs(true - told.mean(fresh)) < 1.96 * deviation)
     blind, told = np.mean(missed, axis=0)
     assert told < 0.5 * blind
@@ -136,12 +136,12 @@ def test_the_process_is_that_of_scikit_learn():
     peer.fit(2 * features - 1, (values - made.level) / made.scale)
     mean, deviation = peer.predict(2 * fresh - 1, return_std=True)
     assert made.mean(fresh) == pytest.approx(made.level + made.scale * mean, abs=1e-5)
-    without = made.predicted(fresh, noise=False)[1]
+    without = made.prediction(fresh, noise=False)[1]
     assert without == pytest.approx(made.scale * deviation, rel=1e-4)
-    assert made.predicted(fresh)[1] ** 2 == pytest.approx(
+    assert made.prediction(fresh)[1] ** 2 == pytest.approx(
         without**2 + made.scale**2 * made.noise, rel=1e-9
     )
-    drawn = made.drawn(fresh, generator.standard_normal((4000, 20)))
+    drawn = made.joint_draws(fresh, generator.standard_normal((4000, 20)))
     assert drawn.mean(axis=0) == pytest.approx(made.mean(fresh), abs=0.02)
     assert drawn.std(axis=0) == pytest.approx(without, rel=0.1)
 
@@ -200,7 +200,7 @@ def test_data_bring_the_same_surrogate_back(model):
 
 
 def test_a_surrogate_refuses_what_lies_outside_its_box_and_too_few_runs(model):
-    mean, deviation = model.predicted(np.array([[1 / 3, 0.4, 0.1]]))
+    mean, deviation = model.prediction(np.array([[1 / 3, 0.4, 0.1]]))
     assert deviation[0] < 0.3
     assert math.isfinite(mean[0])
     with pytest.raises(RangeError, match=r"shoe.tread.depth.*ends before 5 mm.*1 mm to 4 mm"):
@@ -274,7 +274,9 @@ def test_nothing_on_the_front_is_beaten_and_the_same_study_proposes_the_same():
     first, second = (played('kind = "sweep"\nbudget = 16', trade) for _ in range(2))
     assert [one.point for one in first.designs] == [one.point for one in second.designs]
     values = first.goal_values(first.front) * first.plan.signs
-    allowed = first.goal_values(first.designs)[first.allowed(first.designs)] * first.plan.signs
+    allowed = (
+        first.goal_values(first.designs)[first.meets_requirements(first.designs)] * first.plan.signs
+    )
     for row in values:
         assert not ((allowed <= row).all(axis=1) & (allowed < row).any(axis=1)).any()
 
@@ -285,8 +287,8 @@ def test_active_points_lie_where_the_surrogate_knows_least():
     first = StudyResult(result.plan, result.jobs[:14], result.records)
     (surrogate,) = first.surrogates(result.plan.goals[:1])
     every = qmc.Sobol(2, rng=1).random(512)
-    _, deviation = surrogate.predicted(every, noise=False)
-    _, chosen = surrogate.predicted(np.array([result.designs[14].point]), noise=False)
+    _, deviation = surrogate.prediction(every, noise=False)
+    _, chosen = surrogate.prediction(np.array([result.designs[14].point]), noise=False)
     assert chosen[0] > 0.95 * deviation.max()
 
 

@@ -176,3 +176,12 @@ def test_what_is_no_tread_is_refused_with_a_remedy(wrong, where, words):
         case(**wrong)
     assert words in str(refused.value)
     assert where in str(refused.value)
+
+
+def test_one_land_and_one_channel_fit_the_longer_side_of_the_cell():
+    """22 mm by 18 mm: 16.5 mm of land leave 5.5 mm for a channel along it."""
+
+    for channel, room in (("3 mm", True), ("5.4 mm", True), ("5.6 mm", False)):
+        with pytest.raises(InputError) as refused:
+            case(lug_width="16.5 mm", channel_width=channel)
+        assert ("no room" not in str(refused.value)) == room, channel

@@ -93,7 +93,7 @@ def test_the_viscous_part_spreads_with_the_viscosity_alone():
             asperity_law(), contact, fluid, film,
             speed=0.3, wet=wet, fluid_inputs={"viscosity": viscosity},
         )  # fmt: skip
-        viscous = draws.sourced("viscous", SourcedValue(float(draws.viscous.mean())))
+        viscous = draws.sourced_value("viscous", SourcedValue(float(draws.viscous.mean())))
         if spread is None:
             assert viscous.uncertainty is None
             assert "viscosity" in viscous.reason

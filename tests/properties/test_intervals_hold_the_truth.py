@@ -159,7 +159,7 @@ def readings_of_worlds():
     """Return a machine's readings of 1,000 worlds, and what is foretold of them."""
     device, span = machine("pendulum-96"), (0.3e-6, 20e-6)
     worlds, told = (
-        device.read(PlaceDraws(count=count, seed=seed), "hall", span, FLUIDS["water"])
+        device.draw_readings(PlaceDraws(count=count, seed=seed), "hall", span, FLUIDS["water"])
         for count, seed in ((1000, 11), (4000, 12))
     )
     return iter(worlds.tolist()), interval_of_draws(told)
@@ -183,7 +183,7 @@ def surrogate_of_runs():
         "cof", "1", (Range("a", 0.0, 1.0), Range("b", 0.0, 1.0)), points, runs(points)
     )
     fresh = rng.random((1000, 2))
-    mean, deviation = one.predicted(fresh)
+    mean, deviation = one.prediction(fresh)
     return iter(zip(runs(fresh), mean, deviation, strict=True))
 
 

@@ -97,7 +97,7 @@ def _sweeps(law, kelvin, w=None, noise=0.0, seed=0):
     generator = np.random.default_rng(seed)
     found = []
     for t in kelvin:
-        modulus = BROAD.shifted(law.shift_factor(t)).complex_modulus(w)
+        modulus = BROAD.shift_times(law.shift_factor(t)).complex_modulus(w)
         jitter = 1 + noise * generator.standard_normal((2, w.size))
         found.append(DynamicSweep(w, modulus.real * jitter[0], modulus.imag * jitter[1], t))
     return found
@@ -145,7 +145,7 @@ def test_relaxation_superposition():
     t = np.geomspace(0.1, 100.0, 15)
     kelvin = np.array([290.0, 297.0, 304.0, 311.0])
     curves = [
-        RelaxationCurve(t, BROAD.shifted(law.shift_factor(k)).relaxation_modulus(t), k)
+        RelaxationCurve(t, BROAD.shift_times(law.shift_factor(k)).relaxation_modulus(t), k)
         for k in kelvin[::-1]
     ]
     master = relaxation_master_curve(curves, 304.0)

@@ -37,14 +37,14 @@ def test_the_order_of_terms_and_a_term_in_two_halves_change_nothing():
 
 
 def test_stiffness_scales_moduli_and_temperature_shifts_times():
-    hard = BROAD.scaled(3.0)
+    hard = BROAD.scale_moduli(3.0)
     np.testing.assert_allclose(hard.complex_modulus(W), 3 * BROAD.complex_modulus(W))
     np.testing.assert_allclose(hard.loss_tangent(W), BROAD.loss_tangent(W))
     assert hard.instantaneous_modulus == pytest.approx(3 * BROAD.instantaneous_modulus)
-    cold = BROAD.shifted(100.0)
+    cold = BROAD.shift_times(100.0)
     np.testing.assert_allclose(cold.complex_modulus(W), BROAD.complex_modulus(100 * W))
     np.testing.assert_allclose(cold.relaxation_modulus(100 * T), BROAD.relaxation_modulus(T))
-    alike(cold.shifted(0.01), BROAD)
+    alike(cold.shift_times(0.01), BROAD)
 
 
 def test_moduli_of_negative_frequencies_are_conjugate():
@@ -105,7 +105,7 @@ def sweeps(w=None):
     w = np.geomspace(0.6, 600.0, 10) if w is None else w
     found = []
     for kelvin in KELVIN:
-        modulus = BROAD.shifted(LAW.shift_factor(kelvin)).complex_modulus(w)
+        modulus = BROAD.shift_times(LAW.shift_factor(kelvin)).complex_modulus(w)
         found.append(DynamicSweep(w, modulus.real, modulus.imag, kelvin))
     return found
 
@@ -152,7 +152,7 @@ def test_another_reference_temperature_shifts_all_by_one_factor():
 def test_relaxation_tests_shift_as_sweeps_do():
     t = np.geomspace(0.1, 100.0, 12)
     curves = [
-        RelaxationCurve(t, BROAD.shifted(LAW.shift_factor(k)).relaxation_modulus(t), k)
+        RelaxationCurve(t, BROAD.shift_times(LAW.shift_factor(k)).relaxation_modulus(t), k)
         for k in KELVIN
     ]
     found = relaxation_master_curve(curves, KELVIN[2]).shifts.log10_shift_factors

@@ -33,7 +33,7 @@ def test_passive_and_monotonic(equilibrium, parts):
 def test_a_shift_in_time_is_a_shift_in_frequency(equilibrium, parts, decades):
     spectrum = RelaxationSpectrum(equilibrium, *parts)
     w = np.geomspace(1e-3, 1e3, 7)
-    moved = spectrum.shifted(10.0**decades).complex_modulus(w)
+    moved = spectrum.shift_times(10.0**decades).complex_modulus(w)
     np.testing.assert_allclose(moved, spectrum.complex_modulus(w * 10.0**decades), rtol=1e-9)
 
 

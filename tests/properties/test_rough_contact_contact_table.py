@@ -60,7 +60,7 @@ def test_nodes_are_means_over_the_surfaces(table):
     assert table.cof_hysteresis(p, -v) == pytest.approx(-np.mean(cof), rel=1e-4)
     assert table.mean_gap(p, v) == pytest.approx(np.mean([c.mean_gap for c in contacts]), rel=1e-4)
     assert table.flow_factor(p, v, "along") == pytest.approx(np.mean(flow), abs=1e-3)
-    value = table.sourced("real_contact_fraction", p, v)
+    value = table.sourced_value("real_contact_fraction", p, v)
     assert value.uncertainty == pytest.approx(np.std(area, ddof=1), rel=1e-2)
 
 
@@ -184,7 +184,7 @@ def test_another_modulus_is_another_key(tmp_path):
     heights = surfaces(1)[0]
     parts = [
         run._Part(heights.heights, heights.spacing, modulus, 0.1, PRESSURE, 0.5, None).key
-        for modulus in (5e6, 5.0001e6, RUBBER, RUBBER.scaled(1.01))
+        for modulus in (5e6, 5.0001e6, RUBBER, RUBBER.scale_moduli(1.01))
     ]
     assert len(set(parts)) == 4
 
@@ -193,13 +193,13 @@ def test_one_surface_gives_no_uncertainty_and_says_why(tmp_path):
     single = ContactTable.from_surfaces(
         surfaces(1), 5e6, PRESSURE, [0.1], cache=Cache("t", tmp_path)
     )
-    value = single.sourced("mean_gap", 1e5, 0.1)
+    value = single.sourced_value("mean_gap", 1e5, 0.1)
     assert value.uncertainty is None
     assert "one surface" in value.reason
     assert "shortest wave 48 um" in single.notes[0]
     assert single.cof_hysteresis(1e5, 0.1) == pytest.approx(0.0, abs=1e-10)
     with pytest.raises(InputError, match="Did you mean"):
-        single.sourced("mean_gab", 1e5, 0.1)
+        single.sourced_value("mean_gab", 1e5, 0.1)
 
 
 def test_a_material_without_loss_says_why_there_is_no_hysteresis(tmp_path):
@@ -323,7 +323,7 @@ def test_an_elastic_table_scales_with_roughness_and_modulus(height, stiffness, t
     second = ContactTable.from_surfaces(
         [higher], Elastomer(3e6 * stiffness, 0.5), height * stiffness * pressure, [1.0], cache=store
     )
-    scaled, solved = first.law(1.0).scaled(height, height * stiffness), second.law(1.0)
+    scaled, solved = first.law(1.0).scale_contact(height, height * stiffness), second.law(1.0)
     at = height * stiffness * np.geomspace(2e3, 1e5, 7)
     np.testing.assert_allclose(scaled.mean_gap(at), solved.mean_gap(at), rtol=2e-3)
     gap = solved.mean_gap(at)

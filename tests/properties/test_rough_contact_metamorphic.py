@@ -65,7 +65,7 @@ def test_time_in_another_unit(plain):
 
 
 def test_force_in_another_unit(plain):
-    stiffer = numbers(heights(), rubber=RUBBER.scaled(9.81), pressure=9.81 * PRESSURE)
+    stiffer = numbers(heights(), rubber=RUBBER.scale_moduli(9.81), pressure=9.81 * PRESSURE)
     np.testing.assert_allclose(stiffer, plain, rtol=1e-6)
 
 
@@ -75,7 +75,7 @@ def test_a_base_level_changes_nothing(plain):
 
 @pytest.mark.parametrize("poisson_ratio", [0.0, 0.3])
 def test_a_compressible_half_space_is_a_softer_one(plain, poisson_ratio):
-    softer = RUBBER.scaled((1 - poisson_ratio**2) / 0.75)
+    softer = RUBBER.scale_moduli((1 - poisson_ratio**2) / 0.75)
     made = numbers(heights(), rubber=softer, poisson_ratio=poisson_ratio)
     np.testing.assert_allclose(made, plain, rtol=1e-6)
 

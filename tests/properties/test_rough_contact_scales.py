@@ -116,10 +116,10 @@ def test_an_elastic_table_scales_with_heights_and_modulus(cache):
     nodes = np.geomspace(1e3, 1e6, 5)
     table = table_over_scales(density, modulus=MODULUS, pressure=nodes, **options)
     stiffer = table_over_scales(density, modulus=3 * MODULUS, pressure=3 * nodes, **options)
-    scaled = table.scaled(1.0, 3.0, 1.0)
+    scaled = table.scale_contact(1.0, 3.0, 1.0)
     for name in ("real_contact_fraction", "mean_gap", "flow_factor_along"):
         assert scaled.values[name] == pytest.approx(stiffer.values[name], rel=1e-3, abs=1e-9)
-    assert table.scaled(1.0, 1.0, 0.3).breaches(pressure=1e4, speed=0.3) == []
+    assert table.scale_contact(1.0, 1.0, 0.3).breaches(pressure=1e4, speed=0.3) == []
 
 
 def test_waves_in_the_wrong_order_are_refused(cache):

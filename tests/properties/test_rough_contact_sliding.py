@@ -73,7 +73,7 @@ def test_contact_conditions_hold_or_it_says_that_it_failed(height, speed, pressu
 @example(surface(272, (8, 8), 0.0, 0.1), 1e-3, 1000.0, 1.0, 1.0)  # an empty active set
 def test_scaling_of_height_pressure_and_modulus(height, speed, pressure, tall, stiff):
     one = steady_sliding(height, SPACING, MATERIAL, speed, pressure, settings=TIGHT)
-    stiffer = MATERIAL.scaled(stiff)
+    stiffer = MATERIAL.scale_moduli(stiff)
     other = steady_sliding(
         tall * height,
         SPACING,

@@ -68,7 +68,7 @@ def test_walking_never_gives_material_back(heel, depth, more):
     x = np.linspace(0.0, heel.length, 400)
     new = heel.unworn_height(x, np.zeros(x.size))
     less, later = (
-        heel.worn(WalkingWear(each)).land_height(x, np.zeros(x.size)) - new
+        heel.with_wear(WalkingWear(each)).land_height(x, np.zeros(x.size)) - new
         for each in (depth, more * depth)
     )
     assert less.min() >= 0.0
@@ -81,7 +81,7 @@ def test_walking_never_gives_material_back(heel, depth, more):
 def test_a_sole_walked_through_is_that_of_a_shoe_without_tread(heel):
     wear = WalkingWear(0.012)
     worn, bare = (
-        heel_map(shape.worn(wear), shoe_angle=math.radians(7), spacing=1e-3)
+        heel_map(shape.with_wear(wear), shoe_angle=math.radians(7), spacing=1e-3)
         for shape in (heel, replace(heel, tread=None))
     )
     under = bare.clearance < 2e-3

@@ -239,8 +239,8 @@ def test_the_share_who_slip_holds_the_spread_of_the_contact_friction():
     shares = [level.of("slipped").mean() for level in study.by_friction.levels]
     assert (np.diff(shares) <= 0).all()
     assert shares[0] > shares[-1]
-    _, low, high = study.slipped()
-    _, narrow_low, narrow_high = replace(study, by_friction=None).slipped()
+    _, low, high = study.slip_share()
+    _, narrow_low, narrow_high = replace(study, by_friction=None).slip_share()
     assert high - low > narrow_high - narrow_low
     # levels stand 15 to the draws' range: the drawn share is that of the levels weighted
     weights = np.bincount(study.by_friction.nearest, minlength=len(shares)) / 1000

@@ -206,7 +206,7 @@ def test_a_study_whose_designs_are_all_the_same_ends_and_tells_one(tmp_path, mon
     assert [one.number for one in result.front] == [0]
     assert "COF 0.25" in " ".join(result.headline())
     (surrogate,) = result.surrogates(plan.goals)
-    mean, deviation = surrogate.predicted(np.array([[0.3]]))
+    mean, deviation = surrogate.prediction(np.array([[0.3]]))
     assert mean == pytest.approx(0.25)
     assert deviation < 1e-3
 
@@ -250,7 +250,7 @@ def test_a_process_that_begins_as_another_takes_the_lead_computes_none_of_its_ca
     for at in range(40, 200):  # killed with the first cases open
         folder = tmp_path / str(at)
         calls(made_up, folder, True, at)
-        helper = Store.made(folder)
+        helper = Store.open_folder(folder)
         if helper.round is not None:
             break
     taken, real = [], Round.other

@@ -81,7 +81,7 @@ def test_the_best_are_run_again_elsewhere_and_beside_the_start(small):
 def test_what_is_believed_lies_nearer_to_the_truth_than_the_runs():
     result = played("budget = 60", 0, kind="sweep")
     true = peak([one.point for one in result.designs])
-    believed, deviation = result.believed(result.designs, result.plan.goals)
+    believed, deviation = result.goal_estimates(result.designs, result.plan.goals)
     missed = believed[:, 0] - true
     run = result.goal_values(result.designs)[:, 0] - true
     assert np.sqrt(np.mean(missed**2)) < 0.7 * np.sqrt(np.mean(run**2))
@@ -125,7 +125,7 @@ def twenty():
     for seed in range(20):
         result = played("budget = 60", seed)
         (best,) = result.best(1)
-        ((stated,),) = result.believed([best], result.plan.goals)[0]
+        ((stated,),) = result.goal_estimates([best], result.plan.goals)[0]
         noise = NOISE * np.random.default_rng(900 + seed).standard_normal(len(grid))
         missed.append(stated - BETWEEN_GRIDS - peak(best.point))
         better.append(peak(best.point) > peak(grid[np.argmax(peak(grid) + noise)]))

@@ -20,13 +20,13 @@ BOOK = Catalogue.load()
 )
 def test_the_six_shoes_of_table_6(shoe, channel, depth, shore_a, ra):
     entry = BOOK.entry("shoe", shoe)
-    assert entry.sourced("material.shore_a").value == shore_a
-    assert entry.sourced("roughness.ra").value == ra
+    assert entry.sourced_value("material.shore_a").value == shore_a
+    assert entry.sourced_value("roughness.ra").value == ra
     if channel is None:
         assert entry.text("tread.pattern") == "none"
     else:
-        assert entry.sourced("tread.channel_width").value == channel
-        assert entry.sourced("tread.depth").value == depth
+        assert entry.sourced_value("tread.channel_width").value == channel
+        assert entry.sourced_value("tread.depth").value == depth
 
 
 @pytest.mark.parametrize(
@@ -42,15 +42,15 @@ def test_the_six_shoes_of_table_6(shoe, channel, depth, shore_a, ra):
 )
 def test_the_fluids_of_g2_and_g3(fluid, viscosity, cof_bl, alpha, beta):
     entry = BOOK.entry("fluid", fluid)
-    assert entry.sourced("viscosity").value == viscosity
-    assert entry.sourced("boundary.cof_bl").value == cof_bl
-    assert entry.sourced("boundary.alpha").value == alpha
-    assert entry.sourced("boundary.beta").value == beta
+    assert entry.sourced_value("viscosity").value == viscosity
+    assert entry.sourced_value("boundary.cof_bl").value == cof_bl
+    assert entry.sourced_value("boundary.alpha").value == alpha
+    assert entry.sourced_value("boundary.beta").value == beta
 
 
 def test_viscosity_grows_with_glycerol():
     names = [f"glycerol_{share}pct" for share in (25, 50, 75, 90)]
-    values = [BOOK.entry("fluid", name).sourced("viscosity").value for name in names]
+    values = [BOOK.entry("fluid", name).sourced_value("viscosity").value for name in names]
     assert values == sorted(values)
 
 
@@ -58,16 +58,16 @@ def test_errata_are_applied_and_say_what_was_printed():
     # the report's rule for neolite, K = 2 Ginf (1 + nu) / (3 (1 - 2 nu)), gives both
     for name in ("neolite", "rubber_50a"):
         entry = BOOK.entry("material", name)
-        ginf = entry.sourced("relaxation.equilibrium_shear_modulus").value
-        nu = entry.sourced("poisson_ratio").value
+        ginf = entry.sourced_value("relaxation.equilibrium_shear_modulus").value
+        nu = entry.sourced_value("poisson_ratio").value
         rule = 2 * ginf * (1 + nu) / (3 * (1 - 2 * nu))
-        assert entry.sourced("bulk_modulus").value == pytest.approx(rule, rel=2e-3)
+        assert entry.sourced_value("bulk_modulus").value == pytest.approx(rule, rel=2e-3)
     assert "2180 MPa" in BOOK.entry("material", "rubber_50a").leaf("bulk_modulus").erratum
-    radius = BOOK.entry("setup", "pin_on_disk_g2").sourced("method.reduced_radius")
+    radius = BOOK.entry("setup", "pin_on_disk_g2").sourced_value("method.reduced_radius")
     assert radius.value == 23.3e-3
     assert "micrometres" in radius.note
     waves = BOOK.entry("setup", "micro_fe_g1")
-    assert waves.sourced("method.wavelength_shoe").value == 0.5e-3
+    assert waves.sourced_value("method.wavelength_shoe").value == 0.5e-3
     assert "5 mm" in waves.leaf("method.wavelength_shoe").erratum
 
 
@@ -76,23 +76,23 @@ def test_the_relaxation_of_table_2():
     for name, g0, beta in (("neolite", 30.24e6, 0.013), ("rubber_50a", 0.59e6, 0.025)):
         entry = BOOK.entry("material", name)
         (term,) = entry.leaf("relaxation.terms").given
-        ginf = entry.sourced("relaxation.equilibrium_shear_modulus").value
+        ginf = entry.sourced_value("relaxation.equilibrium_shear_modulus").value
         assert ginf + float(term["shear_modulus"].split()[0]) * 1e6 == pytest.approx(g0)
         assert 1 / float(term["time"].split()[0]) == pytest.approx(beta, rel=1e-4)
 
 
 def test_the_set_up_and_results_of_g4():
     motion = BOOK.entry("setup", "slip_tester_g4")
-    assert motion.sourced("motion.speed").value == 0.7
-    assert motion.sourced("motion.normal_force").value == 500
-    assert motion.sourced("sensor.inlet_diameter").value == 10e-3
+    assert motion.sourced_value("motion.speed").value == 0.7
+    assert motion.sourced_value("motion.normal_force").value == 500
+    assert motion.sourced_value("sensor.inlet_diameter").value == 10e-3
     results = BOOK.entry("published", "slip_tester_g4")
-    assert results.sourced("fluid_load_work_shoe_untreaded_glycerol").value == 201
-    assert results.sourced("peak_pressure_athletic_shoe_untreaded_glycerol").value == 214e3
+    assert results.sourced_value("fluid_load_work_shoe_untreaded_glycerol").value == 201
+    assert results.sourced_value("peak_pressure_athletic_shoe_untreaded_glycerol").value == 214e3
 
 
 def test_the_risk_model_of_g6_gives_its_own_extremes():
     entry = BOOK.entry("published", "slip_risk_g6")
-    assert entry.sourced("logistic_slope").value == -49.2
-    assert entry.sourced("logistic_half").value == -0.06
+    assert entry.sourced_value("logistic_slope").value == -49.2
+    assert entry.sourced_value("logistic_half").value == -0.06
     assert entry.numbers("risk_at_lowest_median_highest_rcof") == (0.03, 0.26, 0.83)

@@ -51,7 +51,7 @@ def test_fit_of_figure_14():
 
 
 def test_boundary_law_of_a_measured_fluid():
-    law = BoundaryLaw.measured(G2["glycerol 50 %"], others=ALL)
+    law = BoundaryLaw.from_measured(G2["glycerol 50 %"], others=ALL)
     assert law.cof_parts == pytest.approx((0.365, 0.105))
     assert law.source == SOURCE
     assert any("polyurethane on vinyl" in text for text in law.assumptions)
@@ -69,7 +69,7 @@ def test_thick_glycerol_was_not_measured():
     left = friction_left(ALL)
     assert left.value == pytest.approx(0.105)
     assert abs(left.value - found.cof_boundary.value) < found.cof_boundary.uncertainty
-    law = BoundaryLaw.measured(found, others=ALL)
+    law = BoundaryLaw.from_measured(found, others=ALL)
     assert any("was not measured" in text for text in law.assumptions)
     assert sum(law.cof_parts) == pytest.approx(0.10)
 
@@ -95,14 +95,14 @@ def test_whole_shoes_without_fluid_pressure():
     """Treaded boots, 50 % glycerol, 0.3 m/s, fluid pressure below 10 kPa: ACOF 0.159 to 0.182
     (G.6.2). Eq. 17 as a local law comes near within its spread; COF_BL alone is far above."""
     fluid = G2["glycerol 50 %"]
-    stribeck = StribeckLaw.measured(fluid)
+    stribeck = StribeckLaw.from_measured(fluid)
     found = float(stribeck(1.0, 0.3, 1e9).total)
     spread = sampled_cof(stribeck, [[1.0]], [[0.0]], [[1.0]], speed=0.3).cof.std()
     assert found == pytest.approx(0.185, abs=0.001)
     assert 0.159 - spread < found < 0.182 + spread
     by_viscosity = stribeck_law_at(fluid.viscosity, ALL)
     assert float(by_viscosity(1.0, 0.3, 1e9).total) == pytest.approx(0.18, abs=0.01)
-    boundary = BoundaryLaw.measured(fluid, others=ALL)
+    boundary = BoundaryLaw.from_measured(fluid, others=ALL)
     assert float(boundary(1.0, 0.3, 1e9).total) > 2.5 * 0.182
 
 
@@ -110,7 +110,7 @@ def test_an_asymptote_at_its_bound_is_no_hysteresis():
     """Water and detergent print 0.001, "not as reliable" (G.2.2): the glycerols' 0.105 is taken
     for the split, and COF itself is left as fitted."""
     fluid = G2["detergent 1.5 %"]
-    plain, split = StribeckLaw.measured(fluid), StribeckLaw.measured(fluid, others=ALL)
+    plain, split = StribeckLaw.from_measured(fluid), StribeckLaw.from_measured(fluid, others=ALL)
     one, other = plain(1.0, SPEEDS, 1e9), split(1.0, SPEEDS, 1e9)
     assert other.total == pytest.approx(one.total, rel=1e-12)
     assert one.hysteresis == pytest.approx(0.001)

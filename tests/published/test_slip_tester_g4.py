@@ -20,7 +20,7 @@ SHOES = [
     for tread in ("full_tread", "half_tread", "untreaded")
 ]
 READINGS = Catalogue.load().entry("published", "slip_tester_g4")
-SMALL = READINGS.sourced("fluid_load_all_others_below", "N").value
+SMALL = READINGS.sourced_value("fluid_load_all_others_below", "N").value
 
 EVERY = [  # a tread that is half worn is run by `make test-studies`
     pytest.param(shoe, marks=pytest.mark.study if "half" in shoe else pytest.mark.slow)
@@ -56,7 +56,7 @@ TWO_READINGS = 0.30
 
 @pytest.mark.slow
 def test_the_untreaded_work_shoe_s_load_in_glycerol_is_within_the_reading_error():
-    printed = READINGS.sourced("fluid_load_work_shoe_untreaded_glycerol", "N").value
+    printed = READINGS.sourced_value("fluid_load_work_shoe_untreaded_glycerol", "N").value
     read = result("work_shoe_untreaded", "glycerol").value("fluid_load_sensor")
     assert read == pytest.approx(printed, rel=TWO_READINGS)
 
@@ -70,7 +70,7 @@ def test_the_pocket_of_touch_down_gave_the_athletic_shoe_s_load():
         run(tipped.replace({"motion.duration": end}), quick=True) for end in (None, "0.12 s")
     )
     load, peak = (
-        READINGS.sourced(f"{name}_athletic_shoe_untreaded_glycerol", unit).value
+        READINGS.sourced_value(f"{name}_athletic_shoe_untreaded_glycerol", unit).value
         for name, unit in (("fluid_load", "N"), ("peak_pressure", "Pa"))
     )
     assert steady.value("fluid_load_sensor") < load < early.value("fluid_load_sensor")

@@ -65,11 +65,11 @@ def test_statements_print_what_the_catalogue_holds():
     statements = {one.id: one for one in study("g4").statements}
     for kind in ("work", "athletic"):
         for name, key, unit in (("load", "fluid_load", "N"), ("peak", "peak_pressure", "Pa")):
-            value = entry.sourced(f"{key}_{kind}_shoe_untreaded_glycerol", unit).value
+            value = entry.sourced_value(f"{key}_{kind}_shoe_untreaded_glycerol", unit).value
             accepted = statements[f"{name}_{kind}"].accepted
             assert accepted == pytest.approx((0.85 * value, 1.15 * value))
     bounds = {one.accepted for one in statements.values() if one.id.startswith("below")}
-    assert bounds == {(-math.inf, entry.sourced("fluid_load_all_others_below", "N").value)}
+    assert bounds == {(-math.inf, entry.sourced_value("fluid_load_all_others_below", "N").value)}
 
 
 def test_one_set_of_assumptions_for_all():

@@ -243,7 +243,7 @@ def test_study_g3_takes_the_loss_of_the_compounds_as_a_case_does(computed):
     catalogue, draws = Catalogue.load(), default_law.draws_without_report()
     one = g3.split(catalogue, draws, "soft rubber", "vinyl", 0)
     material = catalogue.entry("material", "rubber_60a")
-    loss = material.sourced("loss_tangent")
+    loss = material.sourced_value("loss_tangent")
     assert range_95(loss) == pytest.approx((0.05, 0.30), rel=0.02)
     rq = 1.25e-6 * 1.89
     slope = 0.105e6 * rq / np.sqrt(1 + (0.105e6 * rq / 1.26) ** 2)

@@ -114,8 +114,8 @@ def test_a_heel_piece_is_refused_where_the_method_loads_more(method: str) -> Non
 def test_the_angle_of_the_slip_prediction_study() -> None:
     case = Case.from_text(HEEL)
     entry = case.catalogue.entry("setup", method_name("slip-prediction-13-deg", case))
-    assert entry.sourced("motion.shoe_angle", "rad").value == pytest.approx(np.radians(13))
-    assert 400 <= (entry.sourced("motion.normal_force", "N").value or 0) <= 500
+    assert entry.sourced_value("motion.shoe_angle", "rad").value == pytest.approx(np.radians(13))
+    assert 400 <= (entry.sourced_value("motion.normal_force", "N").value or 0) <= 500
 
 
 @pytest.mark.slow

@@ -280,7 +280,7 @@ def test_a_project_and_its_states(file_regression, tmp_path, monkeypatch):
     project.copy("a", "b/..", {"motion.speed": "0.7 m/s"})
     project.rename("b", "c")
     project.remove("c")
-    told["states"], told["removed"] = states, project.removed()
+    told["states"], told["removed"] = states, project.removed_variants()
     project.restore("c")
     again = Project(tmp_path / "p")
     told["again"] = [sorted(again.variants()), again.can_undo("a"), again.can_redo("a"), again.name]

@@ -159,7 +159,7 @@ def test_the_bar_of_a_variant(file_regression, monkeypatch, session):
 
     shown = pages_shown(monkeypatch, builds, act)
     shown["variants"] = sorted(session.project.variants())
-    shown["removed"] = session.project.removed()
+    shown["removed"] = session.project.removed_variants()
     held_pages(file_regression, session, shown)
 
 

@@ -200,10 +200,10 @@ def test_a_study_is_edited(file_regression, monkeypatch, session):
                            one.options, dict) and "../variants/a.toml" in one.options)  # fmt: skip
             told["bases"] = base.options
             await page.keep("base", "../variants/b.toml")
-            told["base"] = page.written()
+            told["base"] = page.study_text()
             page.editor.value = 'base = "x"\n'
             await page._take_text()
-            told["edited"] = page.written()
+            told["edited"] = page.study_text()
             before = len(asked)
             await page._take_text()  # nothing has changed
             told["asks again"] = len(asked) - before
@@ -211,7 +211,7 @@ def test_a_study_is_edited(file_regression, monkeypatch, session):
             await page.keep("vary", {"motion.speed": {"from": 1, "to": 2}})
             await page.keep("method", {"kind": "optimise"}, part=True)
             await page.keep("method", {"kind": None, "seed": 3}, part=True)
-            told["written"] = page.written()
+            told["written"] = page.study_text()
             ends: list[Any] = []
             monkeypatch.setattr(
                 studies, "task_line", lambda session, task, ended: ends.append([task, ended])

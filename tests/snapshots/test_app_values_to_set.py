@@ -45,7 +45,7 @@ def test_sliders(file_regression, session, name):
             for value in (each.low, middle, each.high * 1.5, each.low / 2)
         ]
         session.units = "us"
-        told[each.path] = [*rows, each.shown_in("us"), each.shown_in("si"), each.written(middle)]
+        told[each.path] = [*rows, each.shown_in("us"), each.shown_in("si"), each.case_value(middle)]
         session.units = "si"
     held(file_regression, told, hide=MOVING)
 
@@ -53,19 +53,22 @@ def test_sliders(file_regression, session, name):
 def test_what_is_typed(file_regression, session):
     speed, angle, plain = answer.LIVE[0], answer.LIVE[5], answer.LIVE[3]
     told: dict[str, Any] = {
-        "si": [speed.read(typed, "si", comma=False) for typed in ("1", "0.5 ft/s", "3 km/h")],
-        "us": [speed.read(typed, "us", comma=False) for typed in ("1", "0.5 m/s")],
-        "comma": [speed.read("1,5", "si", comma=True), plain.read("62,5", "si", comma=True)],
-        "angle": [angle.read(typed, "us", comma=False) for typed in ("7", "0.1 rad")],
-        "number": plain.read("60", "us", comma=False),
+        "si": [speed.read_typed(typed, "si", comma=False) for typed in ("1", "0.5 ft/s", "3 km/h")],
+        "us": [speed.read_typed(typed, "us", comma=False) for typed in ("1", "0.5 m/s")],
+        "comma": [
+            speed.read_typed("1,5", "si", comma=True),
+            plain.read_typed("62,5", "si", comma=True),
+        ],
+        "angle": [angle.read_typed(typed, "us", comma=False) for typed in ("7", "0.1 rad")],
+        "number": plain.read_typed("60", "us", comma=False),
         "in unit": [
             inputs.read_in_unit(typed, unit, comma=False)
             for typed, unit in (("3", "mm"), ("1 in", "mm"), ("2", "s"))
         ],
         "counts": [inputs.whole_number(typed, comma=False) for typed in ("1", "12", "3.0")],
         "refused": [
-            refusal(speed.read, "fast", "si", comma=False),
-            refusal(speed.read, "3 kg", "si", comma=False),
+            refusal(speed.read_typed, "fast", "si", comma=False),
+            refusal(speed.read_typed, "3 kg", "si", comma=False),
             *(
                 refusal(inputs.whole_number, typed, comma=False)
                 for typed in ("0", "1.5", "-2", "x")

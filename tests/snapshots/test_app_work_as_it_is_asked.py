@@ -267,7 +267,7 @@ def test_a_preview_is_of_a_run(file_regression, monkeypatch):
     bare = pad({}, {"contaminant": "glycerol_90pct"})
     asked: list[Any] = []
     solved = fake(case=case, values={"cof": 0.2, "fluid_load": 10.0},
-                  continued=lambda changes: changes)  # fmt: skip
+                  continue_march=lambda changes: changes)  # fmt: skip
     monkeypatch.setattr(run_preview, "kept_continuation", lambda *_, **__: solved)
     monkeypatch.setattr(run_preview, "of_run", lambda *given: asked.append(given[1:]) or "preview")
     whole = {"cof": SourcedValue(0.3), "fluid_load": SourcedValue(9.0)}
@@ -450,7 +450,7 @@ def test_a_queue_follows_its_tasks(file_regression, tmp_path, monkeypatch):
     async def work_on():
         running = asyncio.create_task(queue.run())
         for task in (first, bad, stop, urgent):
-            await queue.finished(task)
+            await queue.wait_for(task)
         while any(task.open for task in queue.tasks.values()):
             await asyncio.sleep(0.01)
         running.cancel()

@@ -168,7 +168,7 @@ def test_a_case_condenses_its_block_once_for_all_speeds(file_regression):
             made = case.result(speed, lambda *_: None)
             said[f"{strain} {speed}"] = made.averages, made.notes, made.time[-1]
         assert len(case._condensed) == 1
-        said[f"{strain} said"] = case.described()
+        said[f"{strain} said"] = case.describe_case()
     held(file_regression, said)
 
 
@@ -214,7 +214,7 @@ def test_a_case_takes_its_files_and_units(file_regression, tmp_path, heading, sh
     case = micro_case(path)
     assert case.material.shear.equilibrium_modulus == pytest.approx(shear)
     assert case.material.bulk_modulus == pytest.approx(2 * shear * 1.48 / (3 * 0.04))
-    held(file_regression, [case, case.described()], "case " + heading[9])
+    held(file_regression, [case, case.describe_case()], "case " + heading[9])
 
 
 @pytest.mark.parametrize("ratio", [0.4, 0.499])

@@ -366,9 +366,9 @@ def test_cases_of_the_command(file_regression, tmp_path):
     for name, text in CASES.items():
         path.write_text(text, encoding="utf-8")
         case = micro_case(path)
-        said[name] = case, case.described()
+        said[name] = case, case.describe_case()
     other = micro_case(path, solver="condensed")
-    said["solver"] = other.solver, other.described()
+    said["solver"] = other.solver, other.describe_case()
     small = replace(
         other, block=SIDELESS, floor=FLOOR, material=RUBBER, loading=QUICK, finite_strain=False
     )

@@ -82,7 +82,7 @@ def _bounds(field):
             said.append(f"{quantity.parse(f'{value:.9g}{unit}', None):.6g}")
         except Exception as error:  # its text is held
             said.append(str(error).partition(" is outside the physical range")[0] + "!")
-    return f"{quantity.allowed()}: {'; '.join(said)}"
+    return f"{quantity.range_text()}: {'; '.join(said)}"
 
 
 SECTIONS = (
@@ -376,7 +376,7 @@ def test_laws(file_regression, base, part):
             "cof": [part / 2e5 for part in law.contact_shear(pressure, speeds)],
             "inputs": law.inputs, "error": law.error_of_model,
             "assumed": [str(each) for each in getattr(law, "assumed", ())],
-            "measured": getattr(case.friction, "measured", lambda _: None)(context),
+            "measured": getattr(case.friction, "measured_friction", lambda _: None)(context),
             "fluid": context.fluid, "rq": context.rq_value, "E": context.youngs_modulus,
         }  # fmt: skip
     _held(file_regression, answers)
@@ -639,7 +639,7 @@ def test_programs(file_regression, base):
             "motion.speed", "friction.model", "models.friction", "shoe.heel.profile.radius",
             "shoe.tread.pattern", "shoe.tread.grooves", "shoe.outsole.file")},
         "no value": refusal(base.value, "shoe.tred"),
-        "sourced": [base.sourced(path) for path in (
+        "sourced": [base.sourced_value(path) for path in (
             "shoe.roughness.ra", "motion.speed", "shoe.heel.profile.radius", "shoe.heel.length")],
         "copy": base.model_copy(update={"contaminant": "none"}).rows()[:3],
         "dry": Case(**{**BASE, "contaminant": None}).table().rows[-2:],

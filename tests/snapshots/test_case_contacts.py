@@ -47,7 +47,7 @@ def asked(monkeypatch):
             floor=floor, waves=waves, rubber=rubber, pressure=pressure, speeds=speeds, **more
         )
         return SimpleNamespace(
-            scaled=lambda *by: SimpleNamespace(by=by, law=lambda speed: ("law", by, speed)),
+            scale_contact=lambda *by: SimpleNamespace(by=by, law=lambda speed: ("law", by, speed)),
             law=lambda speed: ("law", None, speed),
         )
 
@@ -164,7 +164,7 @@ def test_what_a_film_does_not_read(edges):
         pattern = SimpleNamespace(name=tread, arc_channel=arc)
         case = SimpleNamespace(contaminant=fluid, shoe=SimpleNamespace(tread=pattern))
         option = cast(Any, SimpleNamespace(lug_edges=edges))
-        return ReynoldsFilm.unused(option, cast(Any, case))
+        return ReynoldsFilm.unused_keys(option, cast(Any, case))
 
     every = ("lug_edges", "suction", "dewetting")
     assert unused(None) == unused("glycerol", "none") == every

@@ -203,16 +203,18 @@ def test_numbers_over_places(file_regression, name):
            for key, value in numbers_of(TreadPlace(), 1e-3).items() if key not in COF_PARTS},
     }  # fmt: skip
     over, drawn = made.friction(friction, sampled)
-    values = made.averaged(scalars)
+    values = made.average_numbers(scalars)
     stated = {"p": {"odds": np.linspace(-0.1, 0.1, 60), "whole": np.full(60, 0.02),
                     "peak_fluid_pressure": np.linspace(0, 0.1, 60),
                     "fluid_load": np.full(60, 0.01)}}  # fmt: skip
-    spread = with_film_spread(values, np.linspace(-1, 1, 60), made.drawn, stated)
+    spread = with_film_spread(values, np.linspace(-1, 1, 60), made.draw_scalar, stated)
     said = {
         "it": {one.name: getattr(made, one.name) for one in fields(made)
                if one.name not in ("places", "at_own_place")},
         "places": rows(made.places), "answers": {key: made.answer(key) for key in made.values},
-        "drawn": {key: made.drawn(key, 30) for key in ("fluid_load", "cof", "fluid_load_sensor")},
+        "drawn": {
+            key: made.draw_scalar(key, 30) for key in ("fluid_load", "cof", "fluid_load_sensor")
+        },
         "over": over, "draws": drawn, "plain": made.friction(friction, None)[0].cof,
         "averaged": values, "labels": made.labels(), "assumes": made.assumptions(),
         "fields": made.fields(),
@@ -243,7 +245,7 @@ def test_errors_and_spreads_of_numbers(file_regression):
               "b": {"minimum_film_thickness": 0 * odds, "whole": 0.05 * odds}}  # fmt: skip
     film = with_film_spread(values, odds, None, stated)
     said = {
-        "added": errors.added(values), "sentence": errors.sentence(values),
+        "added": errors.widen_numbers(values), "sentence": errors.sentence(values),
         "only": only.sentence(values), "deviations": [errors.deviation(n) for n in grid],
         "drawn": [with_numerical_error(sampled, e, cof=0.12, sole="a").cof
                   for e in (0.0, 0.01, 0.1)],
@@ -298,7 +300,7 @@ def test_stated_spreads_of_cases(file_regression):
         "left out": (failed.left_out, half.left_out),
         "draws": {path: dict(sorted(each.items())) for path, each in drawn.items()},
         "friction": friction_draws({p: e for p, e in drawn.items() if "cof_viscous" in e}),
-        "exact": effects.exact(with_spreads).sourced("motion.speed"),
+        "exact": effects.exact(with_spreads).sourced_value("motion.speed"),
         "of": [one.path for one in effects.of(with_spreads.replace("motion.speed", 0.3)).effects],
         "moves": dict(sorted(log_moves(before, after).items())),
         "odds": odds_changes(-1.0, 2.0, sample), "none": StatedEffects().labels(),

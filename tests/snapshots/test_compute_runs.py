@@ -166,7 +166,7 @@ def test_a_march_goes_on_under_changes(file_regression):
         ({"contaminant.viscosity": "30 cP"}, True),
         ({"motion.normal_force": "60 N"}, False),
     ):
-        told = begun.continued(change, drawn=drawn)
+        told = begun.continue_march(change, drawn=drawn)
         parts = {name: getattr(told, name) for name in told.__dataclass_fields__}
         parts.pop("seconds")
         seen[str(change)] = parts, str(told)
@@ -176,7 +176,7 @@ def test_a_march_goes_on_under_changes(file_regression):
         {"shoe.heel.length": "32 mm"},
         STEP,
     ):
-        seen[f"refused {change}"] = refusal(begun.continued, change)
+        seen[f"refused {change}"] = refusal(begun.continue_march, change)
     seen["history"] = refusal(preview, pad(STEP), {})
     held(file_regression, seen, "continued")
     assert kept_continuation(case) is kept_continuation(case)

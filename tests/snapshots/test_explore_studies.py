@@ -220,7 +220,7 @@ def told(result: StudyResult) -> dict[str, Any]:
         said |= {
             "best": [one.number for one in result.best(3)],
             "front": [one.number for one in result.front],
-            "margins": result.margins(some), "allowed": result.allowed(some),
+            "margins": result.margins(some), "allowed": result.meets_requirements(some),
             "above": result.above_start(), "higher": result.higher_cof(*result.designs[:2]),
             "goals": result.goal_values(some),
         }  # fmt: skip
@@ -259,7 +259,7 @@ def test_checks_and_costs(file_regression, results, tmp_path):
     here = Computer(4, 8e9, 5e9)
     for name in ("goals", "follow", "optimum", "robust"):
         plan = plan_of(name)
-        store = Store.made(tmp_path / name)
+        store = Store.open_folder(tmp_path / name)
         store.adopt(plan)
         if name == "goals":
             result = results[name]
@@ -279,7 +279,7 @@ def test_checks_and_costs(file_regression, results, tmp_path):
     said["big"] = big.headline(), big.cautions(), big.tasks, big.workers
     said["sizes"] = [size_text(x) for x in (10, 999_999, 1e6, 2.34e8, 1e9, 5.55e9)]
     plan, jobs = plan_of("goals"), results["goals"].jobs[:30]
-    store = Store.made(tmp_path / "cost")
+    store = Store.open_folder(tmp_path / "cost")
     store.adopt(plan)
     store.add_batch(store.jobs(), jobs)
     with store.working(2):
@@ -314,13 +314,13 @@ def test_surrogates_and_effects(file_regression, results):
         np.testing.assert_allclose(again.mean(points), surrogate.mean(points), rtol=1e-9)
         said[str(goal)] = {
             "said": surrogate.reliability, "mean": surrogate.mean(points),
-            "predicted": surrogate.predicted(points), "quiet": surrogate.predicted(
-                points, noise=False), "drawn": surrogate.drawn(points, np.eye(3)),
+            "predicted": surrogate.prediction(points), "quiet": surrogate.prediction(
+                points, noise=False), "drawn": surrogate.joint_draws(points, np.eye(3)),
             "without": surrogate.means_without(points)[:2],
-            "with": surrogate.with_point(points[0]).predicted(points)[1],
+            "with": surrogate.with_point(points[0]).prediction(points)[1],
         }  # fmt: skip
     some = optimum.designs[:3]
-    said["believed"] = optimum.believed(some, optimum.plan.goals)
+    said["believed"] = optimum.goal_estimates(some, optimum.plan.goals)
     (law,) = robust.surrogates(robust.plan.goals)
     said["robust"] = law.mean(points[:, :1]), law.reliability
     dimensions = Range("a", 1.0, 2.0), Choice("b", ("x", "y", "z")), Choice("c", (1.0, 3.0))
@@ -391,7 +391,7 @@ def test_so_many_jobs_are_taken_as_there_is_room_for(jobs, count, taken):
 def test_stores_and_what_their_status_says(file_regression, results, tmp_path):
     plan, result = results["goals"].plan, results["goals"]
     study = Study(plan, tmp_path / "study")
-    Store.made(study.store.folder).adopt(plan)
+    Store.open_folder(study.store.folder).adopt(plan)
     with study.store.working(3):
         for job in result.jobs[:20]:
             study.store.add_record(result.records[job.key])

@@ -76,7 +76,7 @@ def test_draws_of_a_design_are_those_of_its_law_one_condition_after_another():
 
 def test_a_job_of_a_condition_that_is_none_is_set_aside(folder):
     study = Study.load(folder / "s.toml", folder / "out")
-    store, job = study.store.made(study.store.folder), study.plan.job(0, (0.0,), 0, 0, 0)
+    store, job = study.store.open_folder(study.store.folder), study.plan.job(0, (0.0,), 0, 0, 0)
     store.adopt(study.plan)
     assert store.round is None  # nothing is given out, nor is the study over
     for condition in (0, 1):

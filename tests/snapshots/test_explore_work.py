@@ -193,7 +193,7 @@ def test_records_and_their_numbers(file_regression):
     said = {
         "defaults": {k: v for k, v in asdict(bare).items() if k != "draws"},
         "empty": bare.draws.size, "job": asdict(job),
-        "sourced": [known.sourced(name) for name in ("cof", "mass", "gone")],
+        "sourced": [known.sourced_value(name) for name in ("cof", "mass", "gone")],
         "usable": [Record("k", one).usable for one in Ending],
         "packed": len(replace(bare, draws=np.arange(3.0)).packed_draws),
         "again": CaseJob.from_line(job.line()) == job,
@@ -240,7 +240,7 @@ def test_what_a_study_takes_anywhere(file_regression):
 def test_costs_of_cases(file_regression, tmp_path):
     plan = plan_of("goals")
     result = ended(plan)
-    kept_in = Store.made(tmp_path / "s")
+    kept_in = Store.open_folder(tmp_path / "s")
     kept_in.adopt(plan)
     said: dict[str, Any] = {"nothing": study_cost(plan, kept_in)}
     kept_in.add_batch(kept_in.jobs(), result.jobs)
@@ -266,7 +266,7 @@ def test_scans_of_many_draws(file_regression, tmp_path, monkeypatch):
     from underfoot.explore import scan
 
     result = ended(plan_of("grid"))
-    kept_in = Store.made(tmp_path / "s")
+    kept_in = Store.open_folder(tmp_path / "s")
     kept_in.adopt(result.plan)
     some = [result.records[job.key] for job in result.jobs[:5]]
     draws = [np.empty(0), np.arange(4.0), np.arange(4.0) + 1, np.arange(2.0), np.empty(0)]
@@ -324,7 +324,7 @@ def test_a_posterior_of_finished_cases(file_regression, tmp_path, monkeypatch):
     text = PLANS["readings"] + '[[reading]]\nname = "again"\ncof = 0.2\nsd = 0.01\n' \
         'when."motion.speed" = "0.2 m/s"\n'  # fmt: skip
     one = Study(read_plan(text, HERE, base=BASE), tmp_path / "s")
-    kept_in = Store.made(one.store.folder)
+    kept_in = Store.open_folder(one.store.folder)
     kept_in.adopt(one.plan)
     with kept_in.working(1):
         for job in next_batch(one.plan, StudyResult(one.plan, [], {})):

@@ -261,7 +261,7 @@ def test_the_operator_on_a_grid(file_regression):
         made = film_operator(gap, conductance(gap), conductance(gap), spacing=(1e-3, 2e-3), **more)
         said[name] = (
             made.by_pressure, made.by_fraction, made.by_gap(pressure, fraction),
-            made.flows(pressure, fraction), made.carried(fraction),
+            made.flows(pressure, fraction), made.wall_transport(fraction),
             made.imbalance(pressure, fraction, 0.5 * gap), made.imbalance(pressure, fraction),
             made.kx, made.ky, made.carry,
         )  # fmt: skip
@@ -324,7 +324,7 @@ def test_the_operator_on_faces(file_regression):
         said[name] = (
             made.gap, made.kx, made.ky, made.carry, made.by_pressure.coefficients,
             made.by_fraction.coefficients, made.by_gap(pressure, fraction).coefficients,
-            made.carried(fraction), made.imbalance(pressure, fraction, 1e-5),
+            made.wall_transport(fraction), made.imbalance(pressure, fraction, 1e-5),
         )  # fmt: skip
         matrix: FaceMatrix = made.by_pressure
         said[f"{name}, matrix"] = (

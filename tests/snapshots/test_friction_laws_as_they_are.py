@@ -127,17 +127,17 @@ LAWS: dict[str, Callable[[], Any]] = {
         cof_hysteresis=number(0.1, uncertainty=0.02), fine_roughness=number(3e-8, "m")),
     "asperities, no limit": lambda: asperity_ehl_law(
         SCALE, modulus=5e6, viscosity=None, friction=NO_FIT),
-    "boundary": lambda: BoundaryLaw.measured(THICK, others=FLUIDS),
-    "boundary of a pair": lambda: BoundaryLaw.measured(MIDDLE, cof_hysteresis=number(0.9)),
+    "boundary": lambda: BoundaryLaw.from_measured(THICK, others=FLUIDS),
+    "boundary of a pair": lambda: BoundaryLaw.from_measured(MIDDLE, cof_hysteresis=number(0.9)),
     "bowden": lambda: BowdenTaborLaw(
         ShearStrength(2e6, "here", 0.1, 0.02, 1e5), lambda p, _: p / 2e6, lambda p, v: 0.1 + v,
         0.1, "a table"),
     "bowden alone": lambda: BowdenTaborLaw(ShearStrength(2e6, "here"), lambda p, _: p / 1e5, 0.05),
     "constant": lambda: ConstantLaw(0.3, 0.05, "given", 0.1, 0.02, 0.01),
     "constant alone": lambda: ConstantLaw(0.3, 0.0, "given"),
-    "stribeck": lambda: StribeckLaw.measured(MIDDLE),
-    "stribeck at its bound": lambda: StribeckLaw.measured(THIN, others=FLUIDS),
-    "stribeck assumed": lambda: StribeckLaw.measured(THICK, cof_hysteresis=number(0.2)),
+    "stribeck": lambda: StribeckLaw.from_measured(MIDDLE),
+    "stribeck at its bound": lambda: StribeckLaw.from_measured(THIN, others=FLUIDS),
+    "stribeck assumed": lambda: StribeckLaw.from_measured(THICK, cof_hysteresis=number(0.2)),
     "stribeck between": lambda: stribeck_law_at(0.02, FLUIDS),
     "table": lambda: TABLE,
     "table alone": lambda: SpeedTableLaw(np.array([0.1, 1.0]), np.array([0.5, 0.3]), "own"),
@@ -152,7 +152,7 @@ LAWS: dict[str, Callable[[], Any]] = {
                                         None, DRAWS),
     "pair, oil": lambda: PairContactLaw(replace(ROUGH, family="oil"), 0.06, DRAWS),
     "film shear": lambda: FilmShearLaw(ConstantLaw(0.3, 0.05, "given", 0.1), NewtonianFilm(0.1)),
-    "two states": lambda: TwoStateLaw(StribeckLaw.measured(MIDDLE), 0.3),
+    "two states": lambda: TwoStateLaw(StribeckLaw.from_measured(MIDDLE), 0.3),
 }  # fmt: skip
 PRESSURE = np.array([0.0, 0.5, 2e4, 2.6e5, 3e5, 2e6])
 SPEED = np.array([0.0, 0.004, 0.05, -0.3, 1.0, 3.0])
@@ -257,10 +257,10 @@ def test_measured_fluids(file_regression):
 
 
 REFUSED: dict[str, Callable[[], Any]] = {
-    "dry": lambda: BoundaryLaw.measured(None),
-    "not measured": lambda: BoundaryLaw.measured(
+    "dry": lambda: BoundaryLaw.from_measured(None),
+    "not measured": lambda: BoundaryLaw.from_measured(
         replace(THIN, cof_boundary=number(None, reason="no"))),
-    "no fit": lambda: StribeckLaw.measured(NO_FIT),
+    "no fit": lambda: StribeckLaw.from_measured(NO_FIT),
     "no decay": lambda: StribeckLaw(number(0.5), number(0.0), number(0.1)),
     "viscosity": lambda: StribeckLaw(number(0.5), number(0.2), number(0.1), 0.0),
     "negative": lambda: coefficient(number(-0.1), "a"),
@@ -374,7 +374,7 @@ def test_coefficients(file_regression):
     nothing = sampled_cof(ConstantLaw(0.3, 0.05, "a", 0.1, 0.0, 0.0), contact, fluid, film, **drawn)
     assert nothing is None
     assert sampled_cof(ConstantLaw(0.3, 0.05, "a"), contact, fluid, film, **drawn) is None
-    effect = StribeckLaw.measured(MIDDLE)
+    effect = StribeckLaw.from_measured(MIDDLE)
     modelled = sampled_cof(replace(effect, model_deviation=0.1), contact, fluid, film, **drawn)
     draws = LawDraws(np.array([0.5, 1.0, 9.0]), np.ones(3), np.array([1.0, 2.0, 0.0]), 0.01,
                      np.array([0.1, 1.0, 2.0]), np.array([-1.0, 0.0, 2.0]), -0.5, 1.0, 2.0
@@ -387,8 +387,8 @@ def test_coefficients(file_regression):
         "plain": plain,
         "placed": cof(parts, contact, fluid, spacing=1e-3, sampled=sampled, source="a", **places),
         "sampled": sampled, "whole": whole, "dry": dry, "steady": steady, "modelled": modelled,
-        "of the whole": whole and [whole.sourced(n, number(0.1)) for n in ("cof", "viscous")],
-        "exact": steady and steady.sourced("viscous", number(0.1)),
+        "of the whole": whole and [whole.sourced_value(n, number(0.1)) for n in ("cof", "viscous")],
+        "exact": steady and steady.sourced_value("viscous", number(0.1)),
         "at": draws.at(0.6, adhesion=0.2, hysteresis=0.1, viscous=0.05, more_odds=0.5),
         "all": draws.at(1.0, adhesion=0.2, hysteresis=0.1, viscous=0.0),
     }  # fmt: skip
@@ -445,7 +445,7 @@ def test_pairs(file_regression, tmp_path):
             ROUGH, 0.2, replace(DRAWS, basis="b")).spread_basis,
         "slopes": real_slope([1e-7, 8.3e-6, 1e-3]), "area": relative_area([1.0, 1e5, 1e7], 3e6),
         "names": [(one.compound_and_floor, one.sole_roughness) for one in (ROUGH, KNOWN)],
-        "known": KNOWN.drawn(DRAWS, 1), "rough": ROUGH.drawn(DRAWS, 1),
+        "known": KNOWN.draw_inputs(DRAWS, 1), "rough": ROUGH.draw_inputs(DRAWS, 1),
     }  # fmt: skip
     for family in ("aqueous", "detergent", "oil", "dry"):
         for name, each in (("plain", numbers), ("given", given)):

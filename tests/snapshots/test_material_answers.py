@@ -134,8 +134,8 @@ def test_moduli_and_spectra(file_regression):
         "ends": SERIES.complex_modulus([0.0, np.inf, -2.0]),
         "parts": (SERIES.storage_modulus(W), SERIES.loss_modulus(W), SERIES.loss_tangent(W)),
         "text": (repr(SERIES), len(SERIES), SERIES.table().rows, SERIES.table().title),
-        "scaled": SERIES.scaled(0.5),
-        "shifted": SERIES.shifted(10.0, source="warm"),
+        "scaled": SERIES.scale_moduli(0.5),
+        "shifted": SERIES.shift_times(10.0, source="warm"),
         "cautions": [
             one.cautions()
             for one in (
@@ -164,8 +164,8 @@ def test_moduli_and_spectra(file_regression):
                 lambda: replace(SERIES, term_moduli=[1.0, -2.0, 1.0]),
                 lambda: replace(SERIES, relaxation_times=[1.0, 0.0, 2.0]),
                 lambda: RelaxationSpectrum(0.0),
-                lambda: SERIES.scaled(0.0),
-                lambda: SERIES.shifted(-1.0),
+                lambda: SERIES.scale_moduli(0.0),
+                lambda: SERIES.shift_times(-1.0),
                 lambda: SERIES.relaxation_modulus(-1.0),
                 lambda: SERIES.complex_modulus(np.nan),
                 lambda: single_exponential_spectrum(1.0, 2.0, 1.0),
@@ -189,7 +189,7 @@ def test_moduli_and_spectra(file_regression):
 
 def _sweep(kelvin, law=WlfShift(8.0, 100.0, 300.0)):  # noqa: B008
     w = np.geomspace(1.0, 300.0, 9)
-    shifted = SERIES.shifted(float(law.shift_factor(kelvin)))
+    shifted = SERIES.shift_times(float(law.shift_factor(kelvin)))
     return DynamicSweep(w, shifted.storage_modulus(w), shifted.loss_modulus(w), kelvin, "a test")
 
 
@@ -250,7 +250,7 @@ def test_curves_and_fits(file_regression, monkeypatch):
 def test_master_curves(file_regression):
     sweeps = [_sweep(kelvin) for kelvin in (320.0, 280.0, 300.0)]
     curves_of = [
-        RelaxationCurve(t, SERIES.shifted(a).relaxation_modulus(t), kelvin)
+        RelaxationCurve(t, SERIES.shift_times(a).relaxation_modulus(t), kelvin)
         for kelvin, a in ((290.0, 3.0), (310.0, 1.0 / 3.0))
         for t in [np.geomspace(1e-3, 10, 12)]
     ]

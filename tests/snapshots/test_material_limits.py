@@ -38,8 +38,8 @@ def test_moduli_and_densities_are_finite_and_positive(wrong):
         Elastomer(1e6, density=wrong)
     for call in (
         lambda: RelaxationSpectrum(1e6, [1e6], [wrong]),
-        lambda: RelaxationSpectrum(1e6, [1e6], [1.0]).scaled(wrong),
-        lambda: RelaxationSpectrum(1e6, [1e6], [1.0]).shifted(wrong),
+        lambda: RelaxationSpectrum(1e6, [1e6], [1.0]).scale_moduli(wrong),
+        lambda: RelaxationSpectrum(1e6, [1e6], [1.0]).shift_times(wrong),
         lambda: shore_a_gent(wrong),
     ):
         with pytest.raises(Exception, match=r"\w"):
@@ -69,9 +69,9 @@ def test_spectra_by_hand():
     assert one.complex_modulus(2.0) == pytest.approx(2e6 + 1e6j)
     assert one.complex_modulus(-2.0) == pytest.approx(2e6 - 1e6j)
     assert one.loss_tangent(2.0) == pytest.approx(0.5)
-    assert one.shifted(10.0).complex_modulus(0.2) == pytest.approx(one.complex_modulus(2.0))
-    assert one.scaled(3.0).complex_modulus(2.0) == pytest.approx(6e6 + 3e6j)
-    assert (one.scaled(2.0).source, one.scaled(2.0, source="t").source) == ("s", "t")
+    assert one.shift_times(10.0).complex_modulus(0.2) == pytest.approx(one.complex_modulus(2.0))
+    assert one.scale_moduli(3.0).complex_modulus(2.0) == pytest.approx(6e6 + 3e6j)
+    assert (one.scale_moduli(2.0).source, one.scale_moduli(2.0, source="t").source) == ("s", "t")
     assert len(replace(one, equilibrium_modulus=0.0).cautions()) == 1
 
 
@@ -174,7 +174,7 @@ def test_master_curves_of_random_sweeps(file_regression):
         w, t = np.geomspace(0.5, 200, 8), np.geomspace(0.02, 20, 9)
         sweeps, curves = [], []
         for k in kelvin:
-            there = one.shifted(float(law.shift_factor(k)))
+            there = one.shift_times(float(law.shift_factor(k)))
             off = 1 + rng.choice([0.0, 0.01]) * rng.normal(size=(2, 8))
             sweeps.append(DynamicSweep(w, there.storage_modulus(w) * off[0],
                                        there.loss_modulus(w) * off[1], k))  # fmt: skip

@@ -56,9 +56,11 @@ def test_machines(file_regression):
             ],
             "told": [device.title, device.standard, device.reproducibility],
             "classes": [f"{limit:.2f} {device.class_of(limit)}" for limit in limits],
-            "checked": [tried(device.checked, value, "x") for value in (*values, True, "3")],
+            "checked": [tried(device.check_reading, value, "x") for value in (*values, True, "3")],
             "read": [
-                np.quantile(device.read(_draws(), "hall", RQ, each), (0.1, 0.5, 0.9)).tolist()
+                np.quantile(
+                    device.draw_readings(_draws(), "hall", RQ, each), (0.1, 0.5, 0.9)
+                ).tolist()
                 for each in (fluid, machines.FLUIDS["dry"])
             ],
             "likely": [

@@ -34,7 +34,7 @@ def asked(monkeypatch):
             self.case, self.values = case, {"of": case.hash}
             told.append(["begun", case.hash, quick])
 
-        def continued(self, changes, drawn):
+        def continue_march(self, changes, drawn):
             told.append(["continued", changes["floor"], changes["contaminant"], drawn])
             if changes["contaminant"] == "water":
                 raise ConvergenceError("it does not", where="here", remedy="none")

@@ -112,7 +112,7 @@ def test_sensitivities(file_regression):
     one = made.sensitivity()
     told: dict[str, Any] = {"whole": said(one), "failed": words(made.sensitivity(made.FAILED))}
     told["bands"] = {name: one.band(name) for name, _ in sensitivity.QUANTITIES.items()}
-    told["ranked"] = [effect.path for effect in one.ranked("cof")]
+    told["ranked"] = [effect.path for effect in one.ranked_effects("cof")]
     without = dataclasses.replace(made.outcome(), scalars=made.scalars(spread=None))
     told["without a spread"] = words(made.sensitivity(without))
     for name, case in (("bare", made.CASE), ("treaded", TREADED)):
@@ -244,7 +244,7 @@ def test_how_far_one_walks(file_regression):
     }
     told: dict[str, Any] = {}
     for name, walker in walkers.items():
-        ways = [walker.walked(volume, volumes, depths) for volume in volumes]
+        ways = [walker.walk_until(volume, volumes, depths) for volume in volumes]
         told[name] = [[way.distance, way.months, way.text] for way in ways]
     told["pairs"] = [
         walked.worn_pair(text)
@@ -421,7 +421,7 @@ def test_outcomes(file_regression):
     again = outcomes.CaseOutcome.from_text(outcome.as_text())
     assert again == outcome
     failed = dataclasses.replace(outcome, status=Status.NOT_CONVERGED)
-    numbers = [[one.number(name), one.spread(name)] for one in (outcome, failed)
+    numbers = [[one.number(name), one.standard_deviation(name)] for one in (outcome, failed)
                for name in ("cof", "cof_viscous")]  # fmt: skip
     shown: Any = cast(Any, SimpleNamespace(maps=sorted(outcome.maps), seconds=outcome.seconds))
     held(file_regression, [vars(shown), numbers, outcome.remarks(), outcome.usable, failed.usable])

@@ -82,7 +82,7 @@ def study(count=6, **changes) -> Any:
         "setting": SimpleNamespace(viscosity=0.2, friction=SimpleNamespace(assumptions=("law",))),
         "array": SimpleNamespace(inlet_diameter=2e-3), "full": False, "failed": 2, "full_runs": [1],
         "by_friction": object(), "breaches": ("speed 9",), "representative": None,
-        "slipped": lambda: (0.5, 0.2, 0.8), "highest_seen": lambda: 0.4,
+        "slip_share": lambda: (0.5, 0.2, 0.8), "highest_seen": lambda: 0.4,
         "mean": lambda name, unit, crossed=False: number(0.3, unit, 0.004, f"{name} {crossed}"),
         "shares": lambda: {"no slip": (0.5, 0.2, 0.8), "fall": (0.1, 0.0, 0.3)},
         "slip_start": lambda: (0.021, 0.3), "correlation": lambda: 0.8765,
@@ -296,7 +296,7 @@ def test_effects_of_changes(file_regression, monkeypatch):
             self.values, self.cof_draws = values, draws
             self.cof = number(values["cof"], "1", 0.01)
 
-        def continued(self, changes):
+        def continue_march(self, changes):
             if "motion.normal_force" in changes:
                 raise ConvergenceError("too far")
             far = "shoe.heel.facet_angle" in changes
@@ -521,7 +521,7 @@ def test_what_would_tell_two_results_apart(file_regression, monkeypatch):
             if case.name == "lost":
                 raise ConvergenceError("no")
 
-        def continued(self, changes):
+        def continue_march(self, changes):
             asked.append(dict(changes))
             if "shoe.wear.depth" in changes:
                 raise InputError("too deep")

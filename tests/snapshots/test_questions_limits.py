@@ -421,7 +421,7 @@ def test_a_pair_that_lost_as_much_as_the_series_is_taken(monkeypatch):
 
 def test_walks_by_hand():
     """k F s = 1e-15 * 180 * s: of 1e-9 m^3 441 to 2525 km of sliding steps."""
-    rate = walked.WearWalker(1e-15).walked(1e-9, [], [])
+    rate = walked.WearWalker(1e-15).walk_until(1e-9, [], [])
     landings = [1e-9 / (1e-15 * 180 * s) for s in (12.6e-3, 2.2e-3)]
     assert rate.distance == pytest.approx((2 * landings[0] * 0.5, 2 * landings[1] * 0.75))
     month = 365.25 / 12
@@ -429,10 +429,10 @@ def test_walks_by_hand():
         (2 * landings[0] / 18000 / month, 2 * landings[1] / 4000 / month)
     )
     series = [0.0, 1e-9, 4e-9], [0.0, 1e-3, 2e-3]
-    way = walked.WearWalker(1e-15, walked.WornPair(1.5e-3, 5e5)).walked(1e-9, *series)
+    way = walked.WearWalker(1e-15, walked.WornPair(1.5e-3, 5e5)).walk_until(1e-9, *series)
     assert way.distance == pytest.approx((2e5, 2e5))
     assert way.months == pytest.approx((2e5 / 0.75 / 18000 / month, 2e5 / 0.5 / 4000 / month))
-    time = walked.WearWalker(1e-15, walked.WornPair(1.5e-3, None, 5.0)).walked(1e-9, *series)
+    time = walked.WearWalker(1e-15, walked.WornPair(1.5e-3, None, 5.0)).walk_until(1e-9, *series)
     assert time.months == pytest.approx((2.0, 2.0))
     assert time.distance == pytest.approx((2 * month * 4000 * 0.5, 2 * month * 18000 * 0.75))
     assert walked._volume_at(2e-3, *series) == pytest.approx(4e-9)
@@ -668,14 +668,14 @@ def test_frictions_move_from_one_start_to_another_by_hand():
     one = effects._Friction(SourcedValue(0.2, uncertainty=0.02), np.array([0.2, 0.3]),
                             SourcedValue(40.0, "N"))  # fmt: skip
     start, unchanged = effects._Level(0.1, 80.0), effects._Level(0.14, 100.0)
-    moved = one.moved(start, unchanged)
+    moved = one.move_start(start, unchanged)
     assert (moved.cof.value, moved.fluid_load.value) == pytest.approx((0.22, 50.0))
     assert moved.draws == pytest.approx([0.22, 0.33])
-    assert one.moved(unchanged, effects._Level(-9.0, 0.0)).cof.value == 0.0
+    assert one.move_start(unchanged, effects._Level(-9.0, 0.0)).cof.value == 0.0
     assert one.film_left(effects._Level(0.1, 20.0)) == 1.0
     assert one.film_left(effects._Level(0.1, 0.0)) == 1.0
     far = dataclasses.replace(one, fluid_load=SourcedValue(5.0, "N"))
-    assert far.moved(start, effects._Level(0.1, 0.0)).fluid_load.value == pytest.approx(0.0)
+    assert far.move_start(start, effects._Level(0.1, 0.0)).fluid_load.value == pytest.approx(0.0)
     logs = np.log(np.array([0.1, 0.2]))
     narrow = effects._Friction(SourcedValue(0.2), np.exp(0.5 * logs) * 0.2**0.5, one.fluid_load)
     wide = effects._Friction(SourcedValue(0.2), np.exp(logs), one.fluid_load)
@@ -686,8 +686,8 @@ def test_frictions_move_from_one_start_to_another_by_hand():
     assert effects._Spread.beyond(narrow, wide).deviation == 0.0
     undrawn = dataclasses.replace(wide, draws=None)
     assert effects._Spread.beyond(undrawn, wide) == effects._Spread(0.0, 0.0)
-    assert undrawn.spread(beyond, 1.0) is undrawn
-    shifted = wide.spread(effects._Spread(0.3, 0.0), 0.5).draws
+    assert undrawn.widen_draws(beyond, 1.0) is undrawn
+    shifted = wide.widen_draws(effects._Spread(0.3, 0.0), 0.5).draws
     assert shifted == pytest.approx(np.array([0.1, 0.2]) * math.exp(0.15))
 
 
@@ -698,7 +698,7 @@ def test_frictions_move_from_one_start_to_another_by_hand():
 )  # fmt: skip
 def test_a_continuation_is_taken_within_its_error(error, sd, lugs, taken):
     seen = SimpleNamespace(cof=SourcedValue(0.2, uncertainty=sd), errors={"cof": error})
-    march: Any = SimpleNamespace(continued=lambda _: seen)
+    march: Any = SimpleNamespace(continue_march=lambda _: seen)
     change: Any = SimpleNamespace(values={})
     assert (effects._continue_march(march, change, lugs) is seen) is taken
 

@@ -129,7 +129,7 @@ def wear_series(mode, count, untreaded=None):
     scales = {"fluid_load": 20.0, "fluid_load_sensor": 10.0, "peak_fluid_pressure": 5e4,
               "peak_fluid_pressure_sensor": 3e4, "cof": 0.05}  # fmt: skip
     return fake(
-        mode=mode, measured=measured.__getitem__, limit=75.5, untreaded=untreaded,
+        mode=mode, wear_measures=measured.__getitem__, limit=75.5, untreaded=untreaded,
         values=lambda name: scales[name] * states,
         ends=lambda name: (0.9 * scales[name] * states, 1.2 * scales[name] * states),
         curve=lambda name: scales[name] * np.append(states, states[-1] / 2),
@@ -161,7 +161,7 @@ def test_sensitivity(file_regression):
         name="A case", scalars={name: fake(unit=unit) for name, unit in units.items()},
         number=lambda name: 250.0 if name == "peak" else 0.25,
     )  # fmt: skip
-    shown = fake(nominal=nominal, ranked=lambda name: effects[::-1],
+    shown = fake(nominal=nominal, ranked_effects=lambda name: effects[::-1],
                  band=lambda name: fake(value=0.25, deviation=0.03))  # fmt: skip
     held(file_regression, figure_lines(sensitivity_figure(shown, [(n, n.upper()) for n in units])))
 
@@ -295,14 +295,14 @@ def test_figures_of_a_design_study(file_regression):
     models = [
         fake(dimensions=dimensions, name=name, unit=unit, q2=q2,
              runs=fake(values=np.array([size, -2 * size])),
-             predicted=lambda points: (points @ [1.0, 2.0], 0.1 + 0 * points[:, 0]))
+             prediction=lambda points: (points @ [1.0, 2.0], 0.1 + 0 * points[:, 0]))
         for name, unit, q2, size in (("cof", "1", 0.98, 0.2), ("peak", "Pa", 0.5, 3e5))
     ]  # fmt: skip
     goals = [fake(phrase="largest cof", unit="1"), fake(phrase="least load", unit="N")]
     values = {k: np.array([0.1 * k, 50.0 - k]) for k in range(5)}
     result = fake(plan=fake(goals=goals), shown=[0, 1, 2, 3, 4], front=[1, 4],
-                  believed=lambda each, goals: (np.array([values[k] for k in each]), None),
-                  allowed=lambda each: np.array([k != 2 for k in each]))  # fmt: skip
+                  goal_estimates=lambda each, goals: (np.array([values[k] for k in each]), None),
+                  meets_requirements=lambda each: np.array([k != 2 for k in each]))  # fmt: skip
     numbers = [np.array(row) for row in ((0.1, 0.5, 0.2), (0.01, 0.02, np.nan), (0.3, 0.6, 0.4),
                                          (0.05, 0.04, 0.03))]  # fmt: skip
     indices = {
@@ -316,7 +316,7 @@ def test_figures_of_a_design_study(file_regression):
             **vars(models[1])
             | {
                 "dimensions": dimensions[:1],
-                "predicted": lambda points: (points[:, 0], points[:, 0]),
+                "prediction": lambda points: (points[:, 0], points[:, 0]),
             }
         )
     ]

@@ -126,8 +126,8 @@ def test_cells_of_a_sole(file_regression):
     bare = {n: v for n, v in SMALL.data_vars.items() if n in ("contact_pressure", "inside", "x")}
     for name, data in (("small", SMALL), ("part", whole_and_part())):
         made = drawn_sole(data)
-        told[name] = [made, made.plane, made.in_part, made.placed(np.ones((2, 20, 20))).shape,
-                      np.nansum(made.placed(np.ones((20, 20)))), faces_of(sole_mesh(made)),
+        told[name] = [made, made.plane, made.in_part, made.place_field(np.ones((2, 20, 20))).shape,
+                      np.nansum(made.place_field(np.ones((20, 20)))), faces_of(sole_mesh(made)),
                       faces_of(sole_mesh(made, pressed=True))]  # fmt: skip
     flat = drawn_sole(type(SMALL)(bare, SMALL.coords))
     told["without heights"] = [flat, flat.plane]

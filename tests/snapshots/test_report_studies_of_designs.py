@@ -55,7 +55,7 @@ def test_a_study_at_work(file_regression, request, name):
         "runs": [len(each) for each in (shown.ended_runs, shown.front_runs, shown.shown_runs)],
         "front": [each.number for each in shown.front],
         "values": shown.values(shown.shown[:9], shown.plan.shown_goals),
-        "believed": shown.believed(shown.shown[:3], shown.plan.goals),
+        "believed": shown.goal_estimates(shown.shown[:3], shown.plan.goals),
         "sections": [(p.title, p.intro, p.html, p.items, p.first) for p in parts],
     }  # fmt: skip
     held(file_regression, told, hide=HIDDEN)
@@ -173,8 +173,8 @@ def test_numbers_of_an_explorer(file_regression):
                     reason="why <b>" * (k == 1)) for k in range(3)]  # fmt: skip
     values = np.array([[1e-4, 2.0, 0.1], [np.nan, 1.0, 0.2], [3e-4, np.inf, 0.3]])
     result = fake(plan=fake(dimensions=dimensions, shown_goals=goals, goals=goals[:1]),
-                  front=designs[:1], allowed=lambda _: np.array([True, False, True]),
-                  believed=lambda designs, goals: (values, None))  # fmt: skip
+                  front=designs[:1], meets_requirements=lambda _: np.array([True, False, True]),
+                  goal_estimates=lambda designs, goals: (values, None))  # fmt: skip
     held(file_regression, design_study.explorer(result, designs))
 
 

@@ -164,17 +164,19 @@ def test_tables(file_regression, table, tmp_path):
             + [float(table.flow_factor(p, v, outside="extend"))]
             for p, v in ((1e3, 0.2), (1e8, 0.9), (2e5, 0.01), (0.0, 0.2), (2e5, -0.2))
         ],
-        "sourced": [table.sourced(name, 2e5, 0.2) for name in table.values],
+        "sourced": [table.sourced_value(name, 2e5, 0.2) for name in table.values],
         "table": table.table(), "shown": (table.heading(), table.headline(), table.tables()),
         "remarks": table.remarks(), "short": repr(table), "ranges": table.ranges,
         "breaches": [table.breaches(pressure=p, speed=v)
                      for p, v in ((1e5, 0.2), (1e4, -0.2), (1e5, 0.6))],
         "errors": leave_out_errors(table),
-        "scaled": table.scaled(2.0, 3.0, 0.5).values,
-        "scaled nodes": (table.scaled(2.0, 3.0, 0.5).pressure, table.scaled(2.0, 3.0, 0.5).speed),
+        "scaled": table.scale_contact(2.0, 3.0, 0.5).values,
+        "scaled nodes": (table.scale_contact(2.0, 3.0, 0.5).pressure,
+                         table.scale_contact(2.0, 3.0, 0.5).speed),
         "refused": [
             refusal(table.real_contact_fraction, 1e4, 0.2), refusal(table.mean_gap, 1e5, 0.9),
-            refusal(table.sourced, "gap", 1e5, 0.2), refusal(leave_out_errors, table, "speed"),
+            refusal(table.sourced_value, "gap", 1e5, 0.2),
+            refusal(leave_out_errors, table, "speed"),
             refusal(table.cof_hysteresis, -1e5, 0.2), refusal(table.flow_factor, np.nan, 0.2),
         ],
     }  # fmt: skip
@@ -210,7 +212,7 @@ def test_one_surface_and_ranges_of_waves(file_regression, tmp_path):
                                         finer=finer)  # fmt: skip
     said = {
         "one": (one.values, one.deviation, one.notes, one.key and len(one.key)),
-        "sourced": one.sourced("mean_gap", 1e5, 0.3), "headline": one.headline(),
+        "sourced": one.sourced_value("mean_gap", 1e5, 0.3), "headline": one.headline(),
         "within": (within.values, within.notes), "told": told_of,
         "refused": [
             refusal(ContactTable.from_surfaces, *args, cache=store, **more)
@@ -291,10 +293,10 @@ def test_theories(file_regression):
             law.breaches(pressure=1e9, speed=0.1), law.breaches(pressure=1e4, speed=0.1), law.name,
         )  # fmt: skip
         if isinstance(law, TabulatedLaw):
-            scaled = law.scaled(2.0, 3.0)
+            scaled = law.scale_contact(2.0, 3.0)
             assert (scaled.name, scaled.source, scaled.speed) == (law.name, law.source, None)
-            said[f"scaled {name}"] = (scaled.pressure(gaps), scaled.ranges,
-                                      law.changed(2.0, 3.0).flow_factor(gaps))  # fmt: skip
+            other = law.change_gap_and_flow(2.0, 3.0)
+            said[f"scaled {name}"] = scaled.pressure(gaps), scaled.ranges, other.flow_factor(gaps)
     held(file_regression, said)
 
 

@@ -257,7 +257,7 @@ def test_wear_is_cut_from_a_solid(name):
     """What is gone is the volume between the worn land and the new one."""
     pytest.importorskip("netgen.occ")
     new, wear = Heel(**KIND), WORN[name]
-    worn = new.worn(wear)
+    worn = new.with_wear(wear)
     x, y = np.meshgrid(
         (np.arange(500) + 0.5) * 1e-4, (np.arange(400) + 0.5) * 1e-4 - 0.02, indexing="ij"
     )

@@ -338,3 +338,25 @@ def test_axes_are_turned_until_a_plane_is_level():
     assert np.cross(axes[0], axes[1]) == pytest.approx(up)
     assert way.named_direction(np.array([0, 0, -1.0])) == "-z"
     assert way.named_direction(np.array([0.0, 0.6, 0.8])) == "(0.00, 0.60, 0.80)"
+
+
+@pytest.mark.parametrize("quarter", range(4))
+def test_a_sole_drawn_askew_has_its_length_along_the_way_nearest_the_axes(quarter):
+    """A plate turned by 8 degrees about its width: whichever of its four ways lies along x."""
+    tilt, turn = math.radians(8), math.radians(-10)
+    plate = np.array([[x, y, 0.0] for x in (-0.14, 0.14) for y in (-0.05, 0.05)])
+    rotation = np.array([[math.cos(turn), -math.sin(turn), 0], [math.sin(turn), math.cos(turn), 0],
+                         [0, 0, 1]])  # fmt: skip
+    lean = np.array([[math.cos(tilt), 0, math.sin(tilt)], [0, 1, 0],
+                     [-math.sin(tilt), 0, math.cos(tilt)]])  # fmt: skip
+    corners = plate @ rotation.T @ lean.T
+    faces = corners[np.array([[0, 2, 1], [1, 2, 3]])].astype(np.float32)
+    first = (np.array([1.0, 0, 0]), np.array([0, 1.0, 0]), np.array([-1.0, 0, 0]),
+             np.array([0, -1.0, 0]))[quarter]  # fmt: skip
+    up = np.array([0.0, 0.0, 1.0])
+    axes, angle = way.on_its_faces(faces, np.stack([first, np.cross(up, first), up]))
+    assert angle == pytest.approx(tilt, abs=1e-4)
+    assert axes[0] @ first > math.cos(math.radians(15))
+    assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-6)
+    along = lean @ rotation @ (np.array([1.0, 0, 0]), np.array([0, 1.0, 0]))[quarter % 2]
+    assert abs(axes[0] @ along) == pytest.approx(1.0, abs=1e-4)

@@ -22,7 +22,7 @@ X, Y = np.meshgrid(np.linspace(-3.1e-3, 47.3e-3, 22), np.linspace(-23.7e-3, 21.1
 @pytest.mark.parametrize("name", [*TREADS, *TURNED, *CUT])
 def test_treads(file_regression, name):
     tread = (TREADS | TURNED | CUT)[name]
-    moved = tread.moved((2e-3, -1e-3))
+    moved = tread.shift_grooves((2e-3, -1e-3))
     answers = {
         "smallest lug": tread.smallest_lug, "pitch": tread.pitch, "land": tread.land_ratio,
         "periods": tread.periods, "walls": tread.wall_line,
@@ -119,8 +119,10 @@ def test_forms_of_soles(file_regression, name):
             "middle row": shape.land_height(x, y)[:12, 5],
             "worn": shape.worn_off(x, y),
             "line": shape.centre_line(),
-            "as new": shape.worn(None).worn_off(x, y).max(),
-            "with a patch": shape.worn(WornPatch(1e-3, 0.02, 0.01, 0.03, 2e-3)).land_height(x, y),
+            "as new": shape.with_wear(None).worn_off(x, y).max(),
+            "with a patch": shape.with_wear(WornPatch(1e-3, 0.02, 0.01, 0.03, 2e-3)).land_height(
+                x, y
+            ),
         },
         f"form {name}",
     )

@@ -49,7 +49,7 @@ WEARS = {
 @pytest.mark.parametrize("name", WEARS)
 def test_wears(file_regression, name):
     wear = WEARS[name]
-    worn = TREADED.worn(wear)
+    worn = TREADED.with_wear(wear)
     surface = heel_surface(TREADED, spacing=1.5e-3)
     rubbed = worn_surface(surface, wear)
     measures = wear_measures(worn, spacing=1.1e-3)
@@ -61,7 +61,7 @@ def test_wears(file_regression, name):
             "measures": measures, "length": measures.characteristic_length, "surface": rubbed,
             "of surface": surface_wear_measures(surface, rubbed),
             "map": heel_map(worn, shoe_angle=0.1, spacing=1.5e-3),
-            "whole": wear_measures(FORMS["right sole"].worn(wear), spacing=4e-3)
+            "whole": wear_measures(FORMS["right sole"].with_wear(wear), spacing=4e-3)
             if name in ("level", "walking") else None,
         },
         f"wear {name}",

@@ -84,7 +84,7 @@ def test_models(file_regression):
             "people": model.population(ACOF, 0.2, np.array([0.0, 0.03, 0.1, 0.03, 0.5, 1.0, 0.0])),
             "exact": model.population(ACOF, 0.2, 0.0),
             "one of people": model.population(0.15, 0.2, 0.03),
-            "drawn": model.drawn(np.linspace(0.05, 0.3, 6), 0.2, 0.03, normal),
+            "drawn": model.draw_probability(np.linspace(0.05, 0.3, 6), 0.2, 0.03, normal),
             "beyond": [model.breaches(a, 0.2) for a in ACOF[:-1]],
             "table": model.table(),
             "short": repr(model),
@@ -205,8 +205,8 @@ def test_risks(file_regression):
     said["exact need"] = needed_acof(0.1, acof=SourcedValue(0.2))
     slopes = [(0.0, 0.0), (0.1, 0.0), (0.0, 0.02), (-0.1, 0.01)]
     said["slopes"] = [people.on_slope(*one) for one in slopes]
-    said["drawn"] = people.drawn(lambda _: np.array([-40.0, -1.0, 2.0, 60.0]))
-    said["adults"] = ADULTS_LEVEL_WALKING, ADULTS_LEVEL_WALKING.drawn(normal)
+    said["drawn"] = people.draw_moments(lambda _: np.array([-40.0, -1.0, 2.0, 60.0]))
+    said["adults"] = ADULTS_LEVEL_WALKING, ADULTS_LEVEL_WALKING.draw_moments(normal)
     said["bounds"] = [_wilson(*one) for one in ((0, 10), (10, 10), (3, 10), (1, 2), (1, 1))]
     held(file_regression, said)
 
@@ -402,7 +402,7 @@ def test_slips_of_a_small_sole(file_regression, tmp_path, wet):
         "none": pressure_shape([], 0.1).parts.shape,
         "foot": (at.fluid_load, at.usable, [at.friction(v) for v in (0.0, 1e-4, 1e-3, 0.3)]),
         "map": sensor_map(at.state, 2e-3),
-        "settled": foot.settled(normal_force=100.0, speed=0.3).fluid_load,
+        "settled": foot.settle_load(normal_force=100.0, speed=0.3).fluid_load,
         "area": pressed_area(np.array([1e5, 2e5]), np.array([1e5, 3e5]), 1e-3),
         "no area": pressed_area(np.zeros(2), np.zeros(2), 1e-3),
     }
@@ -435,7 +435,7 @@ def told(study: SlipStudy) -> dict[str, Any]:
     return {
         "numbers": study.numbers(),
         "shares": {name: np.round(each, 9) for name, each in study.shares().items()},
-        "slipped": study.slipped(),
+        "slipped": study.slip_share(),
         "rows": study.rows(),
         "start": study.slip_start(),
         "passages": study.sensor_passages(),

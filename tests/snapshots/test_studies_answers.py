@@ -1047,7 +1047,9 @@ def test_g6_of_made_up_runs(file_regression, monkeypatch):
             "fluid_load": 30.0,
             "normal_force": 250.0,
         }
-        return SimpleNamespace(number=numbers.__getitem__, spread=lambda name: 0.1 * cof)
+        return SimpleNamespace(
+            number=numbers.__getitem__, standard_deviation=lambda name: 0.1 * cof
+        )
 
     monkeypatch.setattr(g6, "LAWS", {g6.JUDGED: "the first"})
     two_grids = told(g6.quantities(frictions, {"constant": none}, quick=False, seed=3))

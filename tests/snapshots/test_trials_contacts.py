@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from underfoot.core.remark import Message
 from underfoot.trials.recording.axes import LEVEL, Direction
 from underfoot.trials.recording.trial import Edit
 from underfoot.trials.walking import events as check
@@ -80,6 +81,8 @@ def test_what_is_a_step_and_why_others_are_none():
     other = stance(543, 900, number=2, name="two")
     assert "43 ms from the contact on two" in reason(others=(other,), braking=2)
     assert "no walking direction" in reason(braking=2, direction=Direction())
+    why = Direction(explanation=Message("nobody said"))
+    assert reason(braking=2, direction=why) == "no walking direction: nobody said"
 
 
 def test_peaks_that_are_too_low_or_too_high():

@@ -802,7 +802,7 @@ def test_what_stands_for_a_lost_place(file_regression):
             ],
             "forces": {said: np.flatnonzero(coded_forces(force)) for said, force in forces.items()},
             "clocks": {said: settled(camera_clock(given)) for said, given in clocks.items()},
-            "seen": camera_clock(clocks["late"]).seen(clocks["late"]["a"]),
+            "seen": camera_clock(clocks["late"]).blank_unseen(clocks["late"]["a"]),
         },
     )
 

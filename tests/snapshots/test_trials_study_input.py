@@ -617,7 +617,7 @@ def finished(trial, way, conditions=None, profile=None, **settings):
         analysed_trial(trial, draft, chosen, profile or TrialsProfile(vertical="+z"))
     except Exception as error:  # which one is held
         return f"{type(error).__name__}: {error}"
-    one = draft.finished(chosen)
+    one = draft.finish_result(chosen)
     return {
         "is": f"{one.verdict} {list(one.reasons)}"[:600],
         "kinds": one.kinds,

@@ -559,7 +559,7 @@ def test_file_results(file_regression):
         few=np.array([0.0, np.nan, 1.234567891e-5, np.inf]),
     )
     draft.curve("c", time=np.arange(401.0))
-    one = draft.finished(protocol("en_iso_13287"))
+    one = draft.finish_result(protocol("en_iso_13287"))
     back = FileResult.from_dict(one.as_dict())
     held(
         file_regression,

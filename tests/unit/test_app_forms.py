@@ -64,18 +64,18 @@ def answering(monkeypatch, session, **answers):
      (HARDNESS, "62", "si", 62.0), (VISCOSITY, "3", "us", "3 cP")],
 )  # fmt: skip
 def test_what_is_typed_stands_in_the_unit_that_is_shown(each, typed, units, written):
-    assert each.read(typed, units, comma=False) == written
+    assert each.read_typed(typed, units, comma=False) == written
     for wrong in ("fast", "3 kg"):
         with pytest.raises(InputError):
-            each.read(wrong, units, comma=False)
+            each.read_typed(wrong, units, comma=False)
 
 
 def test_sliders_are_written_in_the_unit_of_the_case_and_read_from_it(session):
     case = session.project.case("a")
-    assert SPEED.given(case) == pytest.approx(0.4)
-    assert VISCOSITY.given(case) == pytest.approx(100)
-    assert HARDNESS.given(case) == pytest.approx(case.value("shoe.material.shore_a"))
-    assert Input("shoe.sole.midsole.thickness", "mm").given(case) is None
+    assert SPEED.value_in(case) == pytest.approx(0.4)
+    assert VISCOSITY.value_in(case) == pytest.approx(100)
+    assert HARDNESS.value_in(case) == pytest.approx(case.value("shoe.material.shore_a"))
+    assert Input("shoe.sole.midsole.thickness", "mm").value_in(case) is None
     moved = {"motion.speed": "0.55", "shoe.material.shore_a": 61, "unknown": 3}
     assert changes([SPEED, HARDNESS], moved) == {
         "motion.speed": "0.55 m/s", "shoe.material.shore_a": 61.0,
@@ -472,7 +472,7 @@ def test_a_place_that_was_dropped_is_computed_and_its_end_is_told(tmp_path):
     async def look(elements):
         (folder / "ward.toml").write_text("")
         page = pages[0]
-        await page.arrived(["places/ward.toml"])
+        await page.take_file(["places/ward.toml"])
         (task,) = session.jobs.tasks.values()
         task.problem, task.state = "no floor", DONE
         await until(lambda: "no floor" in words_of(elements))

@@ -230,7 +230,7 @@ def test_a_job_ends_done_stopped_or_failed_and_what_follows_one_that_is_done_is_
     async def run():
         running = asyncio.create_task(jobs.run())
         for task in tasks:
-            await jobs.finished(task)
+            await jobs.wait_for(task)
         await until(lambda: not any(task.open for task in jobs.tasks.values()))
         running.cancel()
 
@@ -515,7 +515,7 @@ def test_a_section_of_a_study_is_written_as_a_table_or_as_a_value(tmp_path):
         async def write(text):
             texts.append(text)
 
-        page: Any = SimpleNamespace(written=lambda: written, _write=write)
+        page: Any = SimpleNamespace(study_text=lambda: written, _write=write)
         asyncio.run(studies._Study.keep(page, section, value, **part))
         return tomllib.loads(texts[0])
 

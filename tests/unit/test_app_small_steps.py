@@ -168,7 +168,7 @@ def test_an_edit_is_tried_without_being_written_and_written_when_it_is_kept(refu
         view={"file": "a", "chosen": 1},
     )  # fmt: skip
     page._ask_change = lambda *given, **more: TrialView._ask_change(page, *given, **more)
-    asyncio.run(TrialView.tried(page, change))
+    asyncio.run(TrialView.try_change(page, change))
     assert page.pending == (None if refused else change)
     asyncio.run(TrialView._keep_edit(page, change))
     assert asked == [(("asked", "a", 1), change, keep) for keep in (False, True)]

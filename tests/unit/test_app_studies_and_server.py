@@ -212,14 +212,14 @@ def test_a_form_shows_what_the_file_says_and_writes_what_is_changed(session, mon
     ("motion.speed", "", True), ("motion.speed", "1 m/s", False), ("speed", "", False),
 ])  # fmt: skip
 def test_a_new_path_is_proposed_a_range_about_its_value(session, path, old, proposed):
-    page: Any = SimpleNamespace(session=session, written=lambda: 'base = "../variants/a.toml"')
+    page: Any = SimpleNamespace(session=session, study_text=lambda: 'base = "../variants/a.toml"')
     fields = {key: SimpleNamespace(value=old * (key == "from")) for key in ("from", "to")}
     changed = []
 
     async def change():
         changed.append(1)
 
-    rows: Any = SimpleNamespace(page=page, changed=change)
+    rows: Any = SimpleNamespace(page=page, write_section=change)
     asyncio.run(studies._Rows._propose(rows, path, fields))
     speed = session.project.case("a").value("motion.speed")
     wanted = [f"{share * speed:.3g}" for share in (0.7, 1.3)] if proposed else [old, ""]

@@ -42,16 +42,19 @@ def test_values_come_from_the_file_the_catalogue_and_defaults(case):
 
 
 def test_every_value_knows_where_it_comes_from(case):
-    hardness, depth = case.sourced("shoe.material.shore_a"), case.sourced("shoe.tread.depth")
+    hardness, depth = (
+        case.sourced_value("shoe.material.shore_a"),
+        case.sourced_value("shoe.tread.depth"),
+    )
     assert hardness.source == "given in the case"
     assert "Table 6" in depth.source
     assert not depth.assumed
-    speed = case.sourced("motion.speed")
+    speed = case.sourced_value("motion.speed")
     assert (speed.uncertainty, speed.source) == (0.005, "encoder")
-    assert case.sourced("shoe.heel.facet_angle").assumed
+    assert case.sourced_value("shoe.heel.facet_angle").assumed
     oil = case.replace({"contaminant": "canola_oil", "friction": "stribeck"})
-    assert oil.sourced("contaminant.boundary.cof_bl").uncertainty == 0.02
-    assert case.sourced("shoe.material.modulus").value is None
+    assert oil.sourced_value("contaminant.boundary.cof_bl").uncertainty == 0.02
+    assert case.sourced_value("shoe.material.modulus").value is None
     assert case.entries["shoe"] == "work_shoe_half_tread"
 
 
@@ -180,8 +183,11 @@ def test_a_complete_text_needs_no_catalogue_and_is_the_same_case(case):
     assert "\nfrom =" not in text
     again = Case.from_text(text)
     assert again == case
-    assert again.sourced("shoe.tread.depth").source == case.sourced("shoe.tread.depth").source
-    assert again.sourced("motion.speed") == case.sourced("motion.speed")
+    assert (
+        again.sourced_value("shoe.tread.depth").source
+        == case.sourced_value("shoe.tread.depth").source
+    )
+    assert again.sourced_value("motion.speed") == case.sourced_value("motion.speed")
     assert sorted(assumptions(again)) == sorted(assumptions(case))
     assert again.to_toml(complete=True).splitlines()[4:] == text.splitlines()[4:]
 

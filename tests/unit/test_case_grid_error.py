@@ -43,14 +43,14 @@ def test_the_error_joins_spread_and_interval_and_is_told():
         dict(zip(GRID_NAMES, (0.0, 0.0, 0.0, 4e4, 0.0), strict=True)),
         "difference to cells of 1 mm",
     )
-    found = errors.added(values)
+    found = errors.widen_numbers(values)
     assert found["cof"].interval == values["cof"].interval  # its draws hold the error
     assert found["fluid_load"].uncertainty == pytest.approx(50.0)
     low, high = found["fluid_load"].interval
     assert 0 < low < 50.0
     assert math.log(high / 100) == pytest.approx(math.hypot(math.log(1.6), 1.96 * 0.4))
     pressed = values | {"normal_force": SourcedValue(200.0, "N")}
-    assert 160.0 < errors.added(pressed)["fluid_load"].interval[1] < 200.0
+    assert 160.0 < errors.widen_numbers(pressed)["fluid_load"].interval[1] < 200.0
     assert found["fluid_load_sensor"].uncertainty == pytest.approx(13.0)
     assert "tracks; numerical error 12 N" in found["fluid_load_sensor"].note
     assert found["peak_fluid_pressure"].uncertainty == pytest.approx(5e4)

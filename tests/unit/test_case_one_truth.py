@@ -126,8 +126,10 @@ def test_a_changed_case_computes_what_it_says(thick):
 def test_an_unchanged_case_keeps_hash_sources_and_marks(thick, same):
     again = same(thick)
     assert again == thick
-    assert again.sourced("contaminant.viscosity") == thick.sourced("contaminant.viscosity")
-    assert again.sourced("shoe.heel.width").assumed
+    assert again.sourced_value("contaminant.viscosity") == thick.sourced_value(
+        "contaminant.viscosity"
+    )
+    assert again.sourced_value("shoe.heel.width").assumed
     assert again.origins == thick.origins
     assert Case.from_text(again.to_toml()) == thick
 
@@ -148,11 +150,11 @@ def test_a_slot_takes_the_name_of_an_option_in_text_too():
 
 def test_the_source_of_a_value_does_not_outlive_the_value():
     case = Case(**{**PARTS, "contaminant": "canola_oil"}, friction="stribeck")
-    assert case.sourced("friction.cof_bl").uncertainty == 0.02
+    assert case.sourced_value("friction.cof_bl").uncertainty == 0.02
     own = case.friction.model_copy(update={"cof_bl": 0.3})
     changed = case.replace("friction", own)
-    assert changed.sourced("friction.cof_bl").source == "given in the case"
-    assert changed.sourced("friction.cof_bl").uncertainty is None
+    assert changed.sourced_value("friction.cof_bl").source == "given in the case"
+    assert changed.sourced_value("friction.cof_bl").uncertainty is None
     assert changed.origins["friction.cof_bl"].kind == "given"
     assert changed.origins["friction.pair"] == case.origins["friction.pair"]
     assert changed != case.replace("friction.cof_bl", {"value": 0.3, "uncertainty": 0.02})

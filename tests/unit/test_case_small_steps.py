@@ -248,13 +248,13 @@ def test_a_spread_beside_an_si_number_is_one_too(heel):
     told = {"value": "50 cP", "uncertainty": "3 cP"}
     plain = {"value": 0.05, "uncertainty": np.float64(0.003)}
     case, same = (heel.replace("contaminant.viscosity", each) for each in (told, plain))
-    assert same.sourced("contaminant.viscosity").uncertainty == pytest.approx(0.003)
+    assert same.sourced_value("contaminant.viscosity").uncertainty == pytest.approx(0.003)
     assert same == case
     assert Case.from_text(same.to_toml()) == case
     warm = {"value": 293.15, "uncertainty": 2.0}
     glycerol = {"glycerol_fraction": 0.9, "fraction_basis": "volume", "temperature": warm}
     spread = heel.replace("contaminant", glycerol)
-    assert spread.sourced("contaminant.temperature").uncertainty == pytest.approx(2.0)
+    assert spread.sourced_value("contaminant.temperature").uncertainty == pytest.approx(2.0)
     assert Case.from_text(spread.to_toml()) == spread
     for mixed in ({"value": "50 cP", "uncertainty": 0.003}, {"value": 0.05, "uncertainty": True}):
         with pytest.raises(InputError, match="uncertainty"):

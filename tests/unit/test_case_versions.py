@@ -39,8 +39,8 @@ def test_what_moved_and_what_was_in_vain_is_said():
     assert "interface.hurst is left out: not read by any chosen option" in told
     assert case.value("friction.hysteresis_cof") == 0.05
     # marks that a table handed down travel with the value that moves out of it
-    assert case.sourced("friction.hysteresis_cof").source == "own reading"
-    assert case.sourced("friction.cof_bl").uncertainty == 0.02
+    assert case.sourced_value("friction.hysteresis_cof").source == "own reading"
+    assert case.sourced_value("friction.cof_bl").uncertainty == 0.02
     assert case.sensor.array.rows == 3
     assert case.shoe.sole.midsole.modulus == 2e6
     assert case.hardness.name == "ruess"

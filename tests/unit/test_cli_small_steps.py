@@ -180,3 +180,15 @@ def test_curves_are_of_the_fluid_of_the_case_or_of_each_that_is_named_once(entry
         several = _cases(case, ["oil", "measured", "soap"])
     assert own == (case, entry or "the case's fluid")
     assert several == [(("contaminant", name), name) for name in ("oil", "water", "soap")]
+
+
+@pytest.mark.parametrize("columns", [("Quantity", "Remark"), ("Quantity", "Value", "Remark")])
+def test_of_two_columns_the_first_is_whole_and_a_long_one_of_three_is_not(
+    capsys, monkeypatch, columns
+):
+    monkeypatch.setenv("COLUMNS", "64")
+    label = "a long name of a quantity " * 2  # longer than LONGEST_VALUE, in words
+    rows = [[label.strip(), *["1.5"] * (len(columns) - 2), "a remark of its own, short"]]
+    print_table(Table("", columns, rows), everything=True)
+    lines = capsys.readouterr().out.splitlines()
+    assert any(line.startswith(label.strip()) for line in lines) == (len(columns) == 2)

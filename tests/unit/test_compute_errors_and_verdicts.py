@@ -49,7 +49,7 @@ def test_errors_of_grid_and_steps_join_and_widen_what_is_not_of_the_friction():
         "fluid_load": scalar(100.0, "N", uncertainty=120.0, interval=(50.0, 200.0), note="of it"),
         "normal_force": scalar(500.0, "N"),
     }
-    found = errors.added(values)
+    found = errors.widen_numbers(values)
     assert (found["cof"].uncertainty, found["cof"].interval) == (0.04, (0.2, 0.4))
     assert found["cof"].numerical == pytest.approx(0.03)
     film = found["fluid_load"]
@@ -57,7 +57,7 @@ def test_errors_of_grid_and_steps_join_and_widen_what_is_not_of_the_friction():
     assert film.interval == pytest.approx(_wider(100.0, (50.0, 200.0), 50.0, 500.0))
     assert str(film.note).startswith("of it; numerical error 50 N")
     assert found["normal_force"] is values["normal_force"]
-    bare = errors.added(values | {"fluid_load": scalar(100.0, "N")})["fluid_load"]
+    bare = errors.widen_numbers(values | {"fluid_load": scalar(100.0, "N")})["fluid_load"]
     assert (bare.uncertainty, bare.interval) == (50.0, None)
 
 
@@ -194,15 +194,15 @@ def test_errors_of_a_grid_are_those_of_its_rule_its_grids_and_its_lost_places(
 def test_the_film_of_a_draw_is_that_of_its_place_moved_by_the_angle():
     at = at_places(film_by_angle=0.3, by_angle={"peak_fluid_pressure": 4e4, "cof": 0.02})
     count = 20_000
-    film = at.drawn("fluid_load", count)
+    film = at.draw_scalar("fluid_load", count)
     turns = (log_film_odds(film, 500 - film) - np.tile(log_film_odds(
         np.array([100.0, 200.0]), np.array([400.0, 300.0])), count // 2)) / 0.3  # fmt: skip
     assert (turns.min(), turns.max()) == pytest.approx((-math.sqrt(3), math.sqrt(3)), abs=1e-3)
     assert (turns.mean(), turns.std()) == pytest.approx((0, 1), abs=1e-2)
-    peak = at.drawn("peak_fluid_pressure", count)
+    peak = at.draw_scalar("peak_fluid_pressure", count)
     assert peak - np.tile([1e5, 3e5], count // 2) == pytest.approx(4e4 * turns)
-    assert at_places(by_angle={"cof": 1.0}).drawn("cof", 10).min() == 0
-    assert at_places().drawn("cof", 4) == pytest.approx([0.25, 0.15] * 2)
+    assert at_places(by_angle={"cof": 1.0}).draw_scalar("cof", 10).min() == 0
+    assert at_places().draw_scalar("cof", 4) == pytest.approx([0.25, 0.15] * 2)
     with_bevel = at_places(
         film_by_angle=0.3, bevel=UncertainBevel(2 * ANGLE_DEVIATION, True, "h", 1)
     )
@@ -220,7 +220,7 @@ def test_log_odds_of_a_film_end_at_a_millionth_of_the_load():
 def test_means_over_places_have_the_spread_of_the_friction_beside_them():
     names = ("cof", "fluid_load", "peak_fluid_pressure")
     values = {name: scalar(1.0, note="n") for name in names}
-    found = at_places(by_angle={"cof": -0.02, "fluid_load": 1.0}).averaged(values)
+    found = at_places(by_angle={"cof": -0.02, "fluid_load": 1.0}).average_numbers(values)
     assert found["cof"].value == 1.0  # by the draws, not here
     assert found["fluid_load"].value == 150
     assert found["peak_fluid_pressure"].value == 2e5
@@ -229,8 +229,8 @@ def test_means_over_places_have_the_spread_of_the_friction_beside_them():
     assert "100 N to 200 N over 2" in str(found["fluid_load"].note)
     one = at_places()
     single = replace(one, places=one.places[:1])
-    assert single.averaged(values) == values
-    assert "cof_shoe_angle" not in at_places().averaged(values)
+    assert single.average_numbers(values) == values
+    assert "cof_shoe_angle" not in at_places().average_numbers(values)
 
 
 @pytest.mark.parametrize("lost", [0, 3])
@@ -273,13 +273,13 @@ def test_a_sole_without_lugs_is_read_between_the_angles_that_were_solved():
     count = 1000
     own = np.tile([0.0, 0.05], count // 2)
     with_bevel = own + bevel.turns(count)
-    assert at.drawn("cof", count) == pytest.approx(np.interp(with_bevel, turns, cof))
+    assert at.draw_scalar("cof", count) == pytest.approx(np.interp(with_bevel, turns, cof))
     odds = log_film_odds(np.array([50.0, 100, 200, 400]), np.array([450.0, 400, 300, 100]))
     moved = np.interp(with_bevel, turns, odds) - np.interp(own, turns, odds)
     assert at._more_odds(count) == pytest.approx(moved)
     assert (at._more_odds(count, bevel=False) == 0).all()
     plain = at_places(ShoeAngles)
-    assert plain.drawn("cof", 4) == pytest.approx([0.25, 0.15] * 2)
+    assert plain.draw_scalar("cof", 4) == pytest.approx([0.25, 0.15] * 2)
     assert bevel.turns(20_000).std() == pytest.approx(0.02, rel=0.03)
     fields = at.fields()
     assert fields["position_turn"][1] == [0, 0.05]

@@ -122,7 +122,7 @@ def test_a_rough_contact_is_told_at_the_mean_pressure_over_the_load(monkeypatch)
 
     table = SimpleNamespace(
         pressure=np.array([1e5, 2e5]), speed=np.array([0.1, 0.5]),
-        realizations=np.array([4.0, 9.0]), sourced=sourced,
+        realizations=np.array([4.0, 9.0]), sourced_value=sourced,
     )  # fmt: skip
     context = SimpleNamespace(rough_contact=lambda _: table, rq_deviation=0.3)
     parts = SimpleNamespace(

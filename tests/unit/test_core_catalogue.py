@@ -46,7 +46,7 @@ def test_every_value_has_a_source_and_a_readable_unit():
                 assert float(value) == pytest.approx(float(value)), where
                 si_unit(given, where=where)
         if leaf.uncertainty is not None:
-            assert entry.sourced(path).uncertainty > 0, where
+            assert entry.sourced_value(path).uncertainty > 0, where
         if "assum" in leaf.source:
             assert leaf.assumed, where
 
@@ -58,7 +58,7 @@ def test_every_kind_has_entries_and_every_entry_a_title():
 
 
 def test_a_number_comes_in_si_with_its_spread_and_source():
-    cof = BUILT_IN.entry("fluid", "canola_oil").sourced("boundary.cof_bl")
+    cof = BUILT_IN.entry("fluid", "canola_oil").sourced_value("boundary.cof_bl")
     assert (cof.value, cof.uncertainty, cof.unit, cof.assumed) == (0.10, 0.02, "1", False)
     speeds = BUILT_IN.entry("setup", "pin_on_disk_g2").numbers("method.speeds", "m/s")
     assert speeds[:3] == (0.05, 0.1, 0.2)
@@ -68,7 +68,7 @@ def test_a_number_comes_in_si_with_its_spread_and_source():
 def test_values_from_memory_are_marked():
     entry = BUILT_IN.entry("setup", "en_iso_13287")
     assert not entry.leaf("motion.speed").verified
-    assert "from memory" in entry.sourced("motion.speed").source
+    assert "from memory" in entry.sourced_value("motion.speed").source
     assert entry.leaf("limits.heel_tile_detergent").verified
 
 
@@ -82,7 +82,7 @@ def test_an_unknown_name_gets_the_nearest():
         BUILT_IN.describe("work_sho_untreaded")
     assert caught.value.nearest == "work_shoe_untreaded"
     with pytest.raises(InputError) as caught:
-        BUILT_IN.entry("fluid", "canola_oil").sourced("viscocity")
+        BUILT_IN.entry("fluid", "canola_oil").sourced_value("viscocity")
     assert caught.value.nearest == "viscosity"
 
 
@@ -101,12 +101,12 @@ def test_an_entry_takes_over_another_and_overrides_single_values(tmp_path):
     )
     entry = Catalogue.load([folder]).entry("fluid", "cutting_oil")
     assert entry.parents == ("canola_oil",)
-    viscosity = entry.sourced("viscosity")
+    viscosity = entry.sourced_value("viscosity")
     assert viscosity.value == pytest.approx(0.06)
     assert viscosity.uncertainty == pytest.approx(0.002)
     assert viscosity.source == "own viscometer"
-    assert entry.sourced("boundary.cof_bl").value == 0.10
-    assert "G.2.2" in entry.sourced("boundary.cof_bl").source
+    assert entry.sourced_value("boundary.cof_bl").value == 0.10
+    assert "G.2.2" in entry.sourced_value("boundary.cof_bl").source
 
 
 def test_a_value_without_a_source_counts_as_assumed(tmp_path):
@@ -122,8 +122,10 @@ def test_a_name_clash_is_refused_unless_it_says_replaces(tmp_path):
     with pytest.raises(InputError, match=r"defined twice.*replaces = true"):
         Catalogue.load([folder])
     folder = written(tmp_path / "b", text.replace("source", "replaces = true\nsource"))
-    assert Catalogue.load([folder]).entry("fluid", "water").sourced("viscosity").value == 0.0009
-    assert BUILT_IN.entry("fluid", "water").sourced("viscosity").value == 0.0010016
+    assert (
+        Catalogue.load([folder]).entry("fluid", "water").sourced_value("viscosity").value == 0.0009
+    )
+    assert BUILT_IN.entry("fluid", "water").sourced_value("viscosity").value == 0.0010016
 
 
 @pytest.mark.parametrize(

@@ -101,7 +101,7 @@ def test_what_keeps_its_ratio_to_an_open_input_keeps_it_at_any_value():
 def test_a_preview_stands_for_a_change_where_its_error_is_small(error, uncertainty, lugs, taken):
     """Under lugs up to half of the COF's own standard uncertainty, without them no further."""
     seen = SimpleNamespace(cof=SimpleNamespace(uncertainty=uncertainty), errors={"cof": error})
-    march = SimpleNamespace(continued=lambda values: seen if values == {"a": 1} else None)
+    march = SimpleNamespace(continue_march=lambda values: seen if values == {"a": 1} else None)
     change = SimpleNamespace(values={"a": 1})
     result = _continue_march(cast(Any, march), cast(Any, change), lugs)
     assert (result is seen) == taken

@@ -128,7 +128,7 @@ def test_cases_in_the_order_of_a_grid_tell_the_cost_of_the_rest(made_up, tmp_pat
     """A third of a grid whose cost grows along its first axis."""
     made_up(lambda job: np.exp(1.5 * job.point[0]) * (1 + job.condition))
     made = plan(steps=", steps = 6")
-    store = Store.made(tmp_path)
+    store = Store.open_folder(tmp_path)
     store.adopt(made)
     points = made.grid_points()
     jobs = [job for k, point in enumerate(points) for job in made.jobs(k, point, 0)]

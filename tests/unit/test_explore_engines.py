@@ -68,7 +68,7 @@ def test_who_waits_for_a_silent_process_says_for_whom_and_takes_over(tmp_path, m
     monkeypatch.setattr(study, "PATIENCE", 0.05)
     monkeypatch.setattr(study, "compute_job", lambda base, job: answer(job))
     plan = read_plan(TEXT, EXAMPLES)
-    Store.made(tmp_path).adopt(plan)
+    Store.open_folder(tmp_path).adopt(plan)
     Study(plan, tmp_path)._begin_next()
     elsewhere, said = Store(tmp_path), []
     elsewhere.name = "elsewhere-12-abcdef"

@@ -64,7 +64,7 @@ def test_a_record_that_was_packed_meanwhile_is_read_where_it_lies_now():
 def test_of_many_draws_of_many_cases_so_many_are_kept_as_fit(monkeypatch, tmp_path, most, every):
     """Four cases of 100 draws."""
     monkeypatch.setattr(scan, "MOST_DRAWS", most)
-    store = Store.made(tmp_path / "study")
+    store = Store.open_folder(tmp_path / "study")
     store.adopt(read_plan(STUDY, base=load(EXAMPLES / BASE), folder="."))
     with store.working(1):
         for k in range(4):

@@ -30,7 +30,7 @@ class Known:
     def mean(self, places):
         return self.of(np.asarray(places)[:, 0])
 
-    def drawn(self, places, normal):
+    def joint_draws(self, places, normal):
         return np.tile(self.mean(places), (len(normal), 1))
 
 

@@ -133,7 +133,7 @@ def test_cases_that_tell_the_cost_are_computed_by_one_worker_and_only_where_nobo
     jobs = [SimpleNamespace(key=key) for key in "abc"]
     monkeypatch.setattr(study, "spread_jobs", lambda _, count: jobs[:count])
     monkeypatch.setattr(study, "compute_job", lambda base, job: f"{job.key} of {base}")
-    monkeypatch.setattr(study.Store, "made", lambda _: store)
+    monkeypatch.setattr(study.Store, "open_folder", lambda _: store)
     of: Any = SimpleNamespace(plan=SimpleNamespace(base="base"), store=store)
     study.Study.compute_some(of, 3, lambda _, share: told.append(share))
     assert workers == [1]
@@ -159,8 +159,8 @@ def test_the_base_of_a_study_has_the_catalogue_that_is_given_else_that_beside_it
 def test_a_posterior_is_the_prior_by_the_normal_likelihood_of_its_readings():
     """Three variances add: of the reading, of its surrogate, of the model's discrepancy."""
     models = [
-        SimpleNamespace(predicted=lambda at: (1.0 + at[:, 0], 0.1 + 0.2 * at[:, 1])),
-        SimpleNamespace(predicted=lambda at: (5.0 * at[:, 1], np.full(len(at), 0.3))),
+        SimpleNamespace(prediction=lambda at: (1.0 + at[:, 0], 0.1 + 0.2 * at[:, 1])),
+        SimpleNamespace(prediction=lambda at: (5.0 * at[:, 1], np.full(len(at), 0.3))),
     ]
     readings = [SimpleNamespace(value=1.4, sd=0.05), SimpleNamespace(value=3.0, sd=0.4)]
     places = np.random.default_rng(4).uniform(0.02, 0.98, (50, 3))
@@ -168,7 +168,7 @@ def test_a_posterior_is_the_prior_by_the_normal_likelihood_of_its_readings():
     within = TAIL + (1 - 2 * TAIL) * places[:, 2]  # as of every input, without its outermost
     delta = halfnorm.ppf(within, scale=DISCREPANCY)
     for model, reading in zip(models, readings, strict=True):
-        mean, error = model.predicted(places[:, :2])
+        mean, error = model.prediction(places[:, :2])
         spread = np.sqrt(reading.sd**2 + error**2 + (delta * mean) ** 2)
         expected += norm.logpdf(reading.value, mean, spread)
     told = _log_density(places, cast(Any, models), cast(Any, readings))

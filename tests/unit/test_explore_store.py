@@ -38,7 +38,7 @@ numbers = st.floats(allow_nan=False, allow_infinity=False)
 
 @pytest.fixture
 def store(tmp_path):
-    made = Store.made(tmp_path / "study")
+    made = Store.open_folder(tmp_path / "study")
     made.adopt(read_plan(TEXT, EXAMPLES))
     return made
 
@@ -331,15 +331,15 @@ def test_two_masters_on_one_folder_are_told_of_each_other(store):
 
 
 def test_a_folder_that_another_process_is_about_to_fill_is_joined(tmp_path):
-    begun = Store.made(tmp_path / "study")
+    begun = Store.open_folder(tmp_path / "study")
     assert not begun.exists
-    assert Store.made(tmp_path / "study").take(in_order=True) is None
+    assert Store.open_folder(tmp_path / "study").take(in_order=True) is None
 
 
 def test_a_folder_of_something_else_is_left_alone(tmp_path):
     (tmp_path / "thesis.txt").write_text("x")
     with pytest.raises(InputError, match="holds no study"):
-        Store.made(tmp_path)
+        Store.open_folder(tmp_path)
     with pytest.raises(InputError, match="holds no study"):
         Study.load(tmp_path)
 

@@ -411,7 +411,7 @@ def test_entries_and_a_test_method_of_another_package(tribo):
     case = Case(**{**PARTS, "contaminant": "soap_own", "motion": "own_method"})
     assert case.value("contaminant.viscosity") == 0.018
     assert method_name("own-method", case) == "own_method"
-    assert Catalogue.load().entry("fluid", "water").sourced("viscosity").value < 2e-3
+    assert Catalogue.load().entry("fluid", "water").sourced_value("viscosity").value < 2e-3
     (line,) = offered_catalogues()
     assert "the fluid water stays as Underfoot has it" in line
 

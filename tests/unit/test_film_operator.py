@@ -76,7 +76,7 @@ def test_walls_that_carry_both_ways_carry_what_each_face_has_upstream(way):
     flat = np.full((6, 2), 10e-6)
     rough = way * np.array([-3.0, -3.0, -3.0, 2.0, 2.0, 2.0])[:, None] * np.ones(2) * 1e-7
     fraction = np.linspace(0.1, 0.6, 6)[:, None] * np.ones(2)
-    carried = operator(flat, 0.0, roughness_flow=rough).carried(fraction)
+    carried = operator(flat, 0.0, roughness_flow=rough).wall_transport(fraction)
     mean = SPACING * 0.5 * (rough[1:] + rough[:-1])
     upstream = np.where(mean > 0, fraction[:-1], fraction[1:])
     np.testing.assert_allclose(carried, mean * upstream)

@@ -44,7 +44,7 @@ def test_a_converted_hardness_carries_its_spread_and_source_through_a_file(worn_
     assert again.hash == case.hash
     for each in (case, again):
         assert each.shoe.material.shore_a == 35.0
-        hardness = each.sourced("shoe.material.shore_a")
+        hardness = each.sourced_value("shoe.material.shore_a")
         assert hardness.uncertainty == 5.0
         assert "Asker C" in hardness.source
 

@@ -47,7 +47,9 @@ COLUMNS = {
 )
 def test_two_columns_of_a_sweep_tell_its_complex_modulus(names):
     columns = {name: COLUMNS[name] for name in names}
-    table = SimpleNamespace(named=lambda name: name if name in columns else None, si=columns.get)
+    table = SimpleNamespace(
+        find_column=lambda name: name if name in columns else None, si=columns.get
+    )
     storage, loss = _moduli(cast(Any, table), FREQUENCY)
     np.testing.assert_allclose(storage + 1j * loss, MODULUS, rtol=1e-12)
 
@@ -79,9 +81,9 @@ def test_a_scaled_spectrum_is_scaled_at_every_time_and_rate():
     one = RelaxationSpectrum(1e6, np.array([2e6, 5e5]), np.array([0.01, 1.0]), source="made up")
     time = np.geomspace(1e-4, 100, 7)
     np.testing.assert_allclose(
-        one.scaled(1.7).relaxation_modulus(time), 1.7 * one.relaxation_modulus(time)
+        one.scale_moduli(1.7).relaxation_modulus(time), 1.7 * one.relaxation_modulus(time)
     )
-    assert one.scaled(1.7).equilibrium_modulus == pytest.approx(1.7e6)
+    assert one.scale_moduli(1.7).equilibrium_modulus == pytest.approx(1.7e6)
 
 
 @pytest.mark.parametrize(

@@ -15,8 +15,8 @@ from underfoot.material.spectrum_fit import run_length
 def test_a_column_of_times_is_read_under_either_name(name):
     column = SimpleNamespace(name=name, quantity=name, cells=("0.1", "2"))
     table = SimpleNamespace(
-        named=lambda *names: column if name in names else None,
-        needed=lambda *names: pytest.fail(f"asked for {names}"),
+        find_column=lambda *names: column if name in names else None,
+        require_column=lambda *names: pytest.fail(f"asked for {names}"),
         si=lambda one, infinite=False: np.array([0.1, 2.0]) if one is column else None,
         lines=[1, 2], where="made",
     )  # fmt: skip

@@ -244,8 +244,8 @@ def test_a_message_keeps_template_and_values_wherever_it_goes():
         assert copy.values == remark.values
         assert type(copy.values["part"]) is Message
     assert whole["lines"][1] == {"code": part.code, "values": {"count": 1}, "text": "1 step"}
-    assert Remark.stored(whole["lines"][0]) == remark
-    assert Remark.stored("shoe.heel: 1 step").about == "shoe.heel"
+    assert Remark.from_stored(whole["lines"][0]) == remark
+    assert Remark.from_stored("shoe.heel: 1 step").about == "shoe.heel"
     assert remarks([remark, "a text"])[1].values == {"text": "a text"}
     whole = subjects(remarks([remark, "the whole", remark, "the whole"]))
     assert whole == ("shoe.heel", "the whole")

@@ -14,10 +14,10 @@ def chance(limit, interval, value=0.2):
     """Return the probability of a COF with an interval to reach a limit."""
     cof = SourcedValue(value, "1", uncertainty=0.02, interval=interval)
     entry = SimpleNamespace(
-        values={"limits.flat": limit}, sourced=lambda *_: SourcedValue(limit, "1")
+        values={"limits.flat": limit}, sourced_value=lambda *_: SourcedValue(limit, "1")
     )
     outcome = SimpleNamespace(
-        usable=True, scalars={"cof": cof}, number=lambda _: value, spread=lambda _: 0.02
+        usable=True, scalars={"cof": cof}, number=lambda _: value, standard_deviation=lambda _: 0.02
     )
     case = SimpleNamespace(floor=None, contaminant=None)
     return _condition(entry, "flat", case, outcome, None).probability

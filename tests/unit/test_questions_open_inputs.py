@@ -31,7 +31,7 @@ def test_an_input_is_open_whether_it_was_measured_or_assumed_unless_it_says_othe
     path = "shoe.sole.outsole_thickness"
     assumed = Case.load(EXAMPLE)
     given = assumed.replace(path, "8 mm")
-    assert [case.sourced(path).assumed for case in (assumed, given)] == [True, False]
+    assert [case.sourced_value(path).assumed for case in (assumed, given)] == [True, False]
     for always, counted in ((OpenInput(path, 5e-3, "made up"), 2),
                             (OpenInput(path, 5e-3, "made up", only_assumed=True), 1)):  # fmt: skip
         assert sum(len(open_inputs(case, [always])) for case in (assumed, given)) == counted

@@ -125,7 +125,7 @@ def test_what_did_not_converge_is_no_number() -> None:
     value = SourcedValue(0.2, uncertainty=0.01)
     outcome = CaseOutcome("a", "h", {"cof": value}, {}, Status.NOT_CONVERGED, "", (), (), 0.1)
     assert math.isnan(outcome.number("cof"))
-    assert math.isnan(outcome.spread("cof"))
+    assert math.isnan(outcome.standard_deviation("cof"))
 
 
 def _outcome(value: float, spread: float = 0.0) -> CaseOutcome:
@@ -143,7 +143,7 @@ def test_band_adds_independent_spreads_in_quadrature() -> None:
     assert band.inputs == pytest.approx(0.05)
     assert band.deviation == pytest.approx(0.13)
     assert (band.lowest, band.highest) == pytest.approx((0.16, 0.24))
-    assert Sensitivity(_outcome(0.2), effects).ranked("cof")[0] is effects[1]
+    assert Sensitivity(_outcome(0.2), effects).ranked_effects("cof")[0] is effects[1]
 
 
 def test_an_input_that_can_not_be_computed_is_named() -> None:

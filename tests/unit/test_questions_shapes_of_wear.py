@@ -22,10 +22,10 @@ def test_between_two_states_the_removed_thickness_is_linear(monkeypatch):
         worn = SimpleNamespace(x=np.arange(3.0), y=np.zeros(1), removed=removed[number])
         return SimpleNamespace(worn=worn)
 
-    new = SimpleNamespace(worn=lambda shape: shape)
+    new = SimpleNamespace(with_wear=lambda shape: shape)
     monkeypatch.setattr(sole, "new_sole", lambda _: new)
     monkeypatch.setattr(sole, "archard_state", state)
-    monkeypatch.setattr(shapes, "WornMap", lambda x, y, blend: blend)
+    monkeypatch.setattr(shapes, "WornMap", lambda x, y, blend: (x.size, y.size) == (3, 1) and blend)
     monkeypatch.setattr(shapes, "wear_measures", lambda blend: blend)
     cases = cast(Any, [0, 1, 2])
     found = np.array(measures_between(cases, cases, "archard", None))[:, 0]

@@ -49,8 +49,8 @@ def test_no_reason_of_a_design_ends_the_script_that_it_stands_in():
     design = SimpleNamespace(number=0, changes={}, reason=reason)
     plan = SimpleNamespace(dimensions=[], shown_goals=[], goals=[])
     result = SimpleNamespace(
-        plan=plan, front=[], allowed=lambda _: [True],
-        believed=lambda designs, goals: (np.zeros((1, 0)), None),
+        plan=plan, front=[], meets_requirements=lambda _: [True],
+        goal_estimates=lambda designs, goals: (np.zeros((1, 0)), None),
     )  # fmt: skip
     shown = explorer(cast(Any, result), cast(Any, [design]))
     assert "<b>" not in shown

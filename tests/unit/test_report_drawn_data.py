@@ -33,7 +33,7 @@ def made_up_surrogate():
         unit="1",
         q2=0.9,
         runs=SimpleNamespace(values=np.array([1.0, 3.0])),
-        predicted=lambda points: (3 * points[:, 0], np.full(len(points), 0.5)),
+        prediction=lambda points: (3 * points[:, 0], np.full(len(points), 0.5)),
     )
     return cast(Any, made)
 
@@ -86,7 +86,7 @@ def test_wear_is_drawn_over_what_wore_off(mode):
         )
     }  # fmt: skip
     series = SimpleNamespace(
-        mode=mode, measured=measured.__getitem__, values=numbers.__getitem__, untreaded=None,
+        mode=mode, wear_measures=measured.__getitem__, values=numbers.__getitem__, untreaded=None,
         limit=75.0, ends=lambda name: (0.9 * numbers[name], 1.1 * numbers[name]),
     )  # fmt: skip
     load, peak, friction = wear_figure(cast(Any, series)).axes[:3]

@@ -17,7 +17,7 @@ def test_panels_of_a_sensitivity_stand_two_in_a_row(count, rows):
     )
     shown = SimpleNamespace(
         nominal=nominal,
-        ranked=lambda _: [],
+        ranked_effects=lambda _: [],
         band=lambda _: SimpleNamespace(value=1.0, deviation=None),
     )
     figure = sensitivity_figure(cast(Any, shown), {name: name for name in names})

@@ -181,11 +181,11 @@ def test_vectors_on_the_contact_hold_its_nodes_alone_on_every_library(device, sh
     assert part.size == reference.size
     assert part.nodes == inside.sum(axis=(1, 2)).tolist()
     vector = part.take(xp_field)
-    np.testing.assert_array_equal(on_host(part.spread(vector)), np.where(inside, field, 0))
+    np.testing.assert_array_equal(on_host(part.full_field(vector)), np.where(inside, field, 0))
     part.centre(vector)
     mean = field.mean(axis=(1, 2), where=inside, dtype=float)[:, None, None]
     np.testing.assert_allclose(
-        on_host(part.spread(vector)), np.where(inside, field - mean, 0), atol=1e-6
+        on_host(part.full_field(vector)), np.where(inside, field - mean, 0), atol=1e-6
     )
 
 
@@ -204,7 +204,7 @@ def test_neighbours_are_those_of_the_periodic_grid(device, shape):
         for a in (-1, 0, 1)
         for b in (-1, 0, 1)
     )
-    convolved = part.spread(part.near(kernel)(part.take(there[1])))
+    convolved = part.full_field(part.near(kernel)(part.take(there[1])))
     np.testing.assert_allclose(on_host(convolved), np.where(inside, whole, 0.0), atol=1e-5)
 
 

@@ -76,7 +76,7 @@ def test_faster_means_more_load_on_the_film_and_less_friction(wet):
     for speed in (0.05, 0.2, 0.8):
         foot = SoleFoot(setting, setting.shoe_angle)
         foot.advance(0.03, normal_force=500.0, speed=speed, shoe_angle=setting.shoe_angle)
-        instant = foot.settled(normal_force=500.0, speed=speed)
+        instant = foot.settle_load(normal_force=500.0, speed=speed)
         fluid.append(instant.fluid_load)
         friction.append(instant.friction(speed))
     assert (np.diff(fluid) > 1.0).all()

@@ -78,7 +78,7 @@ def test_bounds_of_a_share_hold_the_spread_of_the_friction_from_two_walkers_on(c
         return draws
 
     made = study_of(*[seen(1.0, 1.0, slipped=k == 0) for k in range(count)])
-    share, low, high = study.replace(made, by_friction=fake(means_of=means_of)).slipped()
+    share, low, high = study.replace(made, by_friction=fake(means_of=means_of)).slip_share()
     if count == 1:
         assert (share, asked) == (1.0, [])
         assert math.isnan(low)
@@ -245,11 +245,11 @@ def test_draws_of_people_lie_about_their_mean_and_end_at_what_can_be():
         names.append(name)
         return np.array([-9.0, -1.0, 0.0, 2.0, 99.0])
 
-    mean, sd = people.drawn(normal)
+    mean, sd = people.draw_moments(normal)
     assert mean == pytest.approx([0, 0.15, 0.2, 0.3, 1.0])
     assert sd == pytest.approx([0, 0.01, 0.03, 0.07, 0.5])
     assert len(set(names)) == 2
-    assert RcofPopulation(0.2, 0.03).drawn(normal) == (0.2, 0.03)
+    assert RcofPopulation(0.2, 0.03).draw_moments(normal) == (0.2, 0.03)
 
 
 def test_chances_of_draws_are_those_of_their_frictions_and_models():

@@ -157,7 +157,7 @@ def test_what_one_input_does_stands_at_its_name_the_largest_on_top():
         SimpleNamespace(path=path, low=outcome(load, 1e3), high=outcome(2 * load, 2e3))
         for path, load in (("shoe.tread.lug_width", 9.0), ("motion.speed", 4.0), ("fluid", 1.0))
     ]
-    varied = SimpleNamespace(nominal=outcome(5.0, 1.5e3), ranked=lambda _: ranked)
+    varied = SimpleNamespace(nominal=outcome(5.0, 1.5e3), ranked_effects=lambda _: ranked)
     figure = g4.inputs_figure(cast(Any, SimpleNamespace(name="c")), cast(Any, varied), count=2)
     for panel, values, nominal in zip(
         figure.panels, ([4, 9, 8, 18], [1, 1, 2, 2]), (5.0, 1.5), strict=True

@@ -1,5 +1,6 @@
 """What a scan holds beside its roughness: joints, heights that are no heights, a rounded length."""
 
+import math
 import re
 from types import SimpleNamespace
 from typing import Any, cast
@@ -8,8 +9,9 @@ import numpy as np
 import pytest
 
 from underfoot.core.units import to_si
+from underfoot.surface.heights import HeightMap, Profile
 from underfoot.surface.prepare import held_level
-from underfoot.surface.scan import Scan, read_scan
+from underfoot.surface.scan import Scan, _numbers, read_scan
 
 
 def rough(count: int, spacing: float, seed: int = 4) -> np.ndarray:
@@ -94,3 +96,22 @@ def test_the_waves_of_a_scan_are_the_longest_and_the_shortest_of_its_spectrum():
     spectrum = SimpleNamespace(reliable=(2 * np.pi / 0.8e-3, 2 * np.pi / 5e-6))
     waves = Scan.waves.fget(cast(Any, SimpleNamespace(spectrum=spectrum)))
     assert waves == pytest.approx((0.8e-3, 5e-6))
+
+
+@pytest.mark.parametrize(("angle", "lines"), [(0.0, 2), (math.pi / 2, 4), (math.atan2(1, 2), 2)])
+def test_lines_along_a_lay_see_as_many_surfaces_as_are_wide_across_it(angle, lines):
+    """A map 16 mm by 8 mm, lays 2 mm long: 4 or 2 of its ten lines, whichever side is across."""
+    rng = np.random.default_rng(1)
+    heights = 1e-6 * rng.standard_normal((1600, 10))
+    surface = HeightMap(heights, 10e-6, spacing_y=0.8e-3)
+    along = [Profile(column, 10e-6) for column in heights.T]
+    lay: Any = SimpleNamespace(across=angle, length=2e-3, bounded=False)
+    values, count, _ = _numbers(along, along, 2.5e-3, 60e-6, lay, surface)
+    alone, *_ = _numbers(along, along, 2.5e-3, 60e-6, None, surface)
+    found, one = (each["rq"].uncertainty for each in (values, alone))
+    assert found is not None
+    assert one is not None
+    few = max(1, round(16e-3 / 2.5e-3))  # without a lay lines a cut-off apart
+    most = 10 * count
+    expected = math.sqrt(min(most, count * few) / min(most, count * lines))
+    assert found / one == pytest.approx(expected, rel=1e-9)

@@ -147,7 +147,7 @@ def test_a_condition_tells_the_order_of_the_first_against_the_second(monkeypatch
         def __init__(self, case):
             self.case = case
 
-        def continued(self, changes):
+        def continue_march(self, changes):
             cof = cofs.get((self.case, changes["contaminant"]), 0.3)
             rows = normal[int(self.case == "b")]
             return SimpleNamespace(cof_draws=None if cof is None else cof * np.exp(rows))

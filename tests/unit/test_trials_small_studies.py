@@ -2,6 +2,7 @@
 
 import itertools
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from underfoot.trials.study import analyse_folder
 from underfoot.trials.study.file_result import FileResult, Number, StepResult
 from underfoot.trials.study.study import study_of
 from underfoot.trials.study.study_guard import study_doubts
-from underfoot.trials.study.study_tests import comparison_findings
+from underfoot.trials.study.study_tests import _t_tests, comparison_findings
 
 LEVEL = protocol("level_walking")
 
@@ -205,3 +206,14 @@ def test_trials_of_one_person_tell_of_that_person():
     study = study_of(files_of(STUDIES["one person"]), LEVEL)
     (anova,) = (one for one in study.findings if one.name.startswith("anova"))
     assert "one person" in " ".join(anova.cautions)
+
+
+@pytest.mark.parametrize(("counts", "tested"), [((1, 5), False), ((2, 2), True), ((5, 1), False)])
+def test_t_tests_take_two_trials_or_more_of_each_level(counts, tested):
+    rows = [({"shoe": shoe}, 0.2 + 0.02 * k, 0.004)
+            for k, shoe in enumerate("ab") for _ in range(counts[k])]  # fmt: skip
+    files = files_of(rows)
+    assert bool(_t_tests(files, "shoe", ["a", "b"], "")) == tested
+    walked = [replace(one, conditions={**one.conditions, "who": k % 2 * "S1" or "S0"})
+              for k, one in enumerate(files)]  # fmt: skip
+    assert bool(_t_tests(walked, "shoe", ["a", "b"], "who")) == tested

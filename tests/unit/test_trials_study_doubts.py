@@ -1,5 +1,7 @@
 """What a study says against itself: speed, order, bodies, names, labels; sound studies say none."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -388,3 +390,16 @@ def test_half_of_the_persons_in_a_shoe_is_no_crowd():
     ]  # fmt: skip
     doubts = study_doubts(files, protocol("level_walking"))
     assert not [one for one in doubts if "and none with" in str(one)]
+
+
+def test_a_trial_without_friction_or_person_is_no_doubt_and_hides_none():
+    files = study(mislabelled)
+    rest = [
+        replace(files[5], numbers=()),
+        replace(files[6], numbers=(Number("rcof", 0.0, main="rcof"),)),
+        replace(files[7], conditions={"shoe": "soft"}),
+    ]
+    said = doubts([*files, *(replace(one, file=f"rest {k}") for k, one in enumerate(rest))])
+    labels = [line for line in said if "another label" in line]
+    assert [line for line in labels if 'reads as "soft" of S02' in line]
+    assert not [line for line in labels if "rest " in line]

@@ -1,6 +1,7 @@
 """A value on its way passes from file to file and does not go to and fro: eight ways, counted."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -33,6 +34,17 @@ def test_a_value_takes_no_longer_way_than_it_did(way, stays, returns):
     assert counts["files"] >= 3  # the run was watched
     assert counts["stays"] <= stays
     assert counts["returns"] <= returns
+
+
+def test_types_of_a_way_are_classes_of_the_source(monkeypatch):
+    """A class with another name now would not be followed, and its way would look short."""
+    monkeypatch.syspath_prepend(str(WAYS.parent))
+    from ways import PACKAGE
+    from ways import WAYS as ways
+
+    source = "\n".join(path.read_text("utf-8") for path in PACKAGE.rglob("*.py"))
+    classes = set(re.findall(r"(?m)^class (\w+)", source))
+    assert {name for _, _, types in ways.values() for name in types.split()} <= classes
 
 
 def test_what_a_stay_a_return_and_a_climb_are(monkeypatch):

@@ -149,10 +149,10 @@ def drop_zone(
         ui.label(label)
         ui.label("").classes("soft drop-state").props('aria-live="polite"')
 
-    async def arrived(event: GenericEventArguments) -> None:
+    async def take_files(event: GenericEventArguments) -> None:
         await on_files(list(event.args["detail"]["paths"]))
 
-    zone.on("files", arrived, args=["detail"])
+    zone.on("files", take_files, args=["detail"])
     messages = {key: session.text(f"files.{key}") for key in ("sending", "too_large", "failed")}
     ui.run_javascript(f"takeFiles({zone.html_id!r}, {as_json(settings)}, {as_json(messages)})")
     return zone

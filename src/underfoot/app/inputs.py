@@ -53,13 +53,13 @@ class Input:
         metric = (1.0, SIGNS.get(self.unit, self.unit))
         return CUSTOMARY.get(self.unit, metric) if units == "us" else metric
 
-    def given(self, case: Case) -> float | None:
+    def value_in(self, case: Case) -> float | None:
         """Return the value of a case in the unit, None where it has none."""
         value = case.value(self.path)
         factor = to_si(f"1 {self.unit}", unit_at(self.path), where=self.path) if self.unit else 1.0
         return None if value is None else float(value) / factor
 
-    def read(self, typed: str, units: str, *, comma: bool) -> str | float:
+    def read_typed(self, typed: str, units: str, *, comma: bool) -> str | float:
         """Return what was typed as a case takes it; without a unit it is in that shown.
 
         Raises:
@@ -90,7 +90,7 @@ class Slider(Input):
     step: float
     log: bool = False
 
-    def written(self, value: float) -> str | float:
+    def case_value(self, value: float) -> str | float:
         """Return where the slider stands as a case takes it."""
         return f"{value:.9g} {self.unit}" if self.unit else float(f"{value:.9g}")
 
@@ -98,7 +98,7 @@ class Slider(Input):
 def changes(inputs: Sequence[Slider], values: Mapping[str, Any]) -> dict[str, Any]:
     """Return values of sliders as changes of a case; unknown names are left out."""
     known = {each.path: each for each in inputs}
-    return {path: known[path].written(float(v)) for path, v in values.items() if path in known}
+    return {path: known[path].case_value(float(v)) for path, v in values.items() if path in known}
 
 
 def grooves_of(case: Case) -> list[dict[str, str]]:
@@ -130,21 +130,21 @@ def sliders(
     """
     rows = []
     for each in inputs:
-        value = each.given(case)
+        value = each.value_in(case)
         if value is not None:
             origin, _ = _origin(session, case, each.path, "guess")  # in a word
             rows.append(_row(session, each, value, origin))
     root = ui.html("".join(rows) + '<p data-part="problem" role="alert"></p>', sanitize=False)
     root.classes("sliders").props(f'data-own="{escape(session.text("origin.given"))}"')
 
-    async def asked(question: dict[str, Any]) -> dict[str, Any]:
+    async def answer_question(question: dict[str, Any]) -> dict[str, Any]:
         changed = changes(inputs, question["values"])
         if question["last"]:
             resting(changed)
             return {}
         return await moving(changed)
 
-    link, keeps = session.answers(asked), "true" if keep else "false"
+    link, keeps = session.answers(answer_question), "true" if keep else "false"
     ui.run_javascript(f"askLive({root.html_id!r}, {link!r}, {view.html_id!r}, {keeps})")
     return root
 
@@ -234,7 +234,7 @@ def number_field(
 
     An empty field takes back what a person gave: the catalogue's value returns.
     """
-    value = each.given(case)
+    value = each.value_in(case)
     if value is None and case.value(each.path.rpartition(".")[0]) is None:
         return
     size, sign = each.shown_in(session.units)
@@ -243,7 +243,7 @@ def number_field(
     field = ui.input(label, value=text)
     field.props(f'dense outlined suffix="{sign}" inputmode="decimal"').classes("number")
 
-    def typed(_: GenericEventArguments) -> None:
+    def take_typed(_: GenericEventArguments) -> None:
         if field.value == text:
             return
         given = (field.value or "").strip()
@@ -253,13 +253,15 @@ def number_field(
             return
         try:
             comma = session.text.comma
-            change({each.path: each.read(given, session.units, comma=comma) if given else None})
+            change(
+                {each.path: each.read_typed(given, session.units, comma=comma) if given else None}
+            )
         except UnderfootError as error:  # the file stays as it was
             field.error = str(error)
             return
         field.error = None
 
-    field.on("change", typed)
+    field.on("change", take_typed)
     hint, source = _origin(session, case, each.path)
     if hint:
         field.props(f'hint="{escape(hint)}"')

@@ -244,7 +244,7 @@ class JobQueue:
             self._arrived.clear()
             await self._arrived.wait()
 
-    async def finished(self, task: QueuedTask) -> QueuedTask:
+    async def wait_for(self, task: QueuedTask) -> QueuedTask:
         """Return a task when it has ended."""
         while task.open:
             await asyncio.sleep(5 * TICK)

@@ -125,7 +125,7 @@ class Project:
         files.sort(key=lambda file: file.stat().st_mtime_ns, reverse=True)
         return [file.stem for file in files if NAME.fullmatch(file.stem)]
 
-    def removed(self) -> list[str]:
+    def removed_variants(self) -> list[str]:
         """Return the names of variants that were removed and can be restored."""
         present = set(self.variants())
         return sorted(name for name in self._states if name not in present)

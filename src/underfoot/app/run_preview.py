@@ -46,11 +46,11 @@ def preview_of_run(
     if worn or (changes and not has_lugs(case)):
         raise InputError(
             "wear has no preview" if worn else "a sole without lugs has no preview",
-            where="continued",
+            where="continue_march",
             remedy="Run the changed case",
         )
     solved = kept_continuation(case, progress=progress)
-    return of_run(solved, solved.continued(changes), whole)
+    return of_run(solved, solved.continue_march(changes), whole)
 
 
 def of_run(solved: Continuation, seen: Preview, whole: Mapping[str, SourcedValue]) -> Preview:
@@ -95,12 +95,12 @@ def of_run(solved: Continuation, seen: Preview, whole: Mapping[str, SourcedValue
                 film=values["fluid_load"],
                 film_spread=errors["fluid_load"],
             ),
-            where="continued",
+            where="continue_march",
             remedy="Run the changed case",
         )
     share = values["cof"] / seen.values["cof"] if seen.values["cof"] else 1.0
     draws = None if seen.cof_draws is None else share * seen.cof_draws
-    cof = seen.cof.scaled(share)
+    cof = seen.cof.scale_value(share)
     return replace(seen, values=values, errors=errors, cof=cof, cof_draws=draws)
 
 

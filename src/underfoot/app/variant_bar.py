@@ -26,7 +26,7 @@ def no_variant(session: Session, route: str, example: Callable[[Session], None])
     ui.label(session.text("design.none")).classes("lead")
     begin = ui.button(session.text("design.begin"), on_click=lambda: example(session))
     begin.props("no-caps unelevated")
-    for name in session.project.removed():
+    for name in session.project.removed_variants():
         back = ui.button(
             session.text("variant.restore", name=name),
             on_click=partial(_back, session, name, route),
@@ -78,7 +78,7 @@ def variant_bar(session: Session, route: str, name: str, changed: Callable[[], N
                 ui.menu_item(text("variant.copy"), lambda: go(project.copy(name, name)))
                 ui.menu_item(text("variant.rename"), lambda: _rename(session, route, name))
                 ui.menu_item(text("variant.remove"), remove)
-                for gone in project.removed():
+                for gone in project.removed_variants():
                     ui.menu_item(
                         text("variant.restore", name=gone), partial(_back, session, gone, route)
                     )
@@ -95,11 +95,11 @@ def _rename(session: Session, route: str, name: str) -> None:
         dialog.props(f'aria-label="{text("variant.rename")}"')
         field = ui.input(text("variant.name"), value=name).props("autofocus")
 
-        def done() -> None:
+        def rename_variant() -> None:
             dialog.close()
             session.go(route, variant=session.project.rename(name, (field.value or "").strip()))
 
-        field.on("keydown.enter", done)
+        field.on("keydown.enter", rename_variant)
         with ui.element("div").classes("row"):
-            ui.button(text("variant.rename"), on_click=done).props("no-caps unelevated")
+            ui.button(text("variant.rename"), on_click=rename_variant).props("no-caps unelevated")
             ui.button(text("frame.cancel"), on_click=dialog.close).props("no-caps flat")

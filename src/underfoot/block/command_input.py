@@ -144,7 +144,7 @@ class MicroCase:
         shutil.rmtree(kept)
         return result
 
-    def described(self) -> list[str]:
+    def describe_case(self) -> list[str]:
         """Return the case in words."""
         b, m = self.block, self.material
         size = " x ".join(f"{length * 1e3:g}" for length in b.size)

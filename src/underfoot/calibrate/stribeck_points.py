@@ -62,7 +62,7 @@ def pin_on_disk(catalogue: Catalogue) -> Pin:
     method = catalogue.entry("setup", "pin_on_disk_g2")
 
     def number(entry: Entry, path: str, unit: str) -> float:
-        value = entry.sourced(path, unit).value
+        value = entry.sourced_value(path, unit).value
         assert value is not None  # entries of the package hold numbers
         return float(value)
 

@@ -39,7 +39,7 @@ def stribeck_law_from_fit(
             remedy="Use SpeedTableLaw with the readings, or BoundaryLaw with their mean",
         )
 
-    def sourced(parameter: FitParameter) -> SourcedValue:
+    def sourced_value(parameter: FitParameter) -> SourcedValue:
         return SourcedValue(
             parameter.value,
             parameter.unit,
@@ -55,9 +55,9 @@ def stribeck_law_from_fit(
         if p.remark
     ]
     return StribeckLaw(
-        sourced(fit.boundary),
-        sourced(fit.tau),
-        sourced(fit.asymptote),
+        sourced_value(fit.boundary),
+        sourced_value(fit.tau),
+        sourced_value(fit.asymptote),
         viscosity,
         assumed=tuple(notes),
         model_deviation=math.sqrt(fit.residual_sum / max(fit.n - 3, 1)),

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from underfoot.core import InputError, SourcedValue, content_hash, display
 from underfoot.core.catalogue import Catalogue, catalogue_folders
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.remark import Message
 
@@ -383,7 +384,7 @@ class Case(Presentable):
             idle |= {
                 f"{path}.{name}"
                 for path, section in sections
-                for name in section.unused(self._parts)
+                for name in section.unused_keys(self._parts)
             }
         return frozenset(idle)
 
@@ -443,12 +444,14 @@ class Case(Presentable):
                 values.append((path, spelled(value, unit_at(path))))
         return values
 
-    def sourced(self, path: str) -> SourcedValue:
+    def sourced_value(self, path: str) -> SourcedValue:
         """Return the number at a dotted path with its uncertainty, source and marks."""
         section, name = self._holder(path)
         if section is None or name not in type(section).model_fields:
             return _ABSENT
-        return section.sourced(name)
+        return section.sourced_value(name)
+
+    sourced = renamed_member("sourced", "sourced_value", gone="0.4")
 
     def _holder(self, path: str) -> tuple[Section | None, str]:
         """Return the section that holds a value, and the value's name in it."""

@@ -224,7 +224,7 @@ def _settle_section(
 ) -> dict[str, Any]:
     """Return a section's table without what its option does not take, with what files hold."""
     if issubclass(model, Option) and not model.name:
-        known = model.known().values()
+        known = model.known_options().values()
         try:
             model = model.pick(table)
         except (ValidationError, PydanticCustomError):
@@ -241,7 +241,7 @@ def _settle_section(
                     'not used by {key} = "{name}"', key=model.key, name=model.name
                 )
     try:
-        table = model.completed(table, composition.folder, path)
+        table = model.complete_data(table, composition.folder, path)
     except InputError as error:
         composition.errors.append(place_error(error, composition.places))
         composition.failed.append(path)
@@ -293,15 +293,15 @@ def _settle_contact(composition: Composition) -> None:
             item = item.get(part) if isinstance(item, dict) else None
         return item
 
-    def measured(item: Any) -> bool:
+    def is_measured(item: Any) -> bool:
         """Return whether a value, or every value of a table, is given and not assumed."""
         if isinstance(item, dict):
-            return bool(item) and all(map(measured, item.values()))
+            return bool(item) and all(map(is_measured, item.values()))
         origin = origin_of(item)
         return item is not None and not (origin and (origin.leaf.assumed or not origin.leaf.given))
 
     inputs = [value(part, "roughness", "file") for part in ("shoe", "floor")]
-    if all(map(measured, [*inputs, value("shoe", "material", "relaxation")])):
+    if all(map(is_measured, [*inputs, value("shoe", "material", "relaxation")])):
         why = "both surfaces and the compound are measured"
         leaf = Leaf(MEASURED_CONTACT, source=why)
         composition.tree["rough_contact"] = {"model": Origin(DEFAULT, leaf, value=MEASURED_CONTACT)}
@@ -339,7 +339,7 @@ def optional_reads() -> dict[str, list[str]]:
     """Return the paths that only some options read, with the options that do."""
     reads: dict[str, list[str]] = {}
     for name, slot in _top_slots().items():
-        for option in slot.known().values():
+        for option in slot.known_options().values():
             for path in option.reads:
                 reads.setdefault(path, []).append(f'{name}.{slot.key} = "{option.name}"')
     return reads

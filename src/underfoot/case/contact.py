@@ -135,7 +135,7 @@ class ContactTableOption(RoughContactOption):
     sha256: str | None = optional("checksum of the file that is meant")
 
     @classmethod
-    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+    def complete_data(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
         return with_checksum(table, "file", folder, where)
 
     def build(self, context: Context) -> PressureGapLaw:
@@ -160,7 +160,7 @@ class ContactTableOption(RoughContactOption):
         near = 10 ** (round(10 * math.log10(scale)) / 10)
         nodes = np.geomspace(low / near, high / near, count)
         made = self._new_table(context, floor.density, shoe.density, nodes, name)
-        return made.scaled(1.0, scale, context.motion.speed) if elastic else made
+        return made.scale_contact(1.0, scale, context.motion.speed) if elastic else made
 
     def _self_affine(self, context: Context) -> ContactTable:
         """Return the contact of self-affine surfaces with the interface's Rq."""
@@ -180,7 +180,7 @@ class ContactTableOption(RoughContactOption):
         if not elastic:
             return made
         higher, stiffer = rq / ELASTIC_RQ, context.youngs_modulus / ELASTIC_MODULUS
-        return made.scaled(higher, higher * stiffer, context.motion.speed)
+        return made.scale_contact(higher, higher * stiffer, context.motion.speed)
 
     def _new_table(
         self, context: Context, floor: Density, shoe: Density | None, pressure: Array, name: str
@@ -386,7 +386,7 @@ class ReynoldsFilm(FilmOption):
         assumed=True,
     )
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         edges = ("suction", "dewetting")
         if case.contaminant is None or is_bare(case):
             return ("lug_edges", *edges)

@@ -67,7 +67,7 @@ class MeasuredFluid(ContaminantSection):
         return self.family
 
     def build(self) -> SourcedValue:
-        return self.sourced("viscosity")
+        return self.sourced_value("viscosity")
 
 
 class GlycerolWater(ContaminantSection):
@@ -91,7 +91,7 @@ class GlycerolWater(ContaminantSection):
         viscosity = glycerol_water(*at.values(), basis=self.fraction_basis).viscosity
         spreads = [viscosity.uncertainty or 0.0]
         for name, field in (("fraction", "glycerol_fraction"), ("temperature", "temperature")):
-            if spread := self.sourced(field).uncertainty:
+            if spread := self.sourced_value(field).uncertainty:
                 near = at[name] - SLOPE * spread, at[name] + SLOPE * spread
                 ends = np.clip(near, RANGES[name].low, RANGES[name].high)
                 values = glycerol_water_viscosity(**{**at, name: ends}, basis=self.fraction_basis)

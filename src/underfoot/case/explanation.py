@@ -106,7 +106,7 @@ def _key(path: str) -> str:
     quantity = quantity_of(field)
     if quantity is not None:
         unit = unit_at(path)
-        lines.append(f"  unit {unit if unit != '1' else 'none'}, {quantity.allowed()}")
+        lines.append(f"  unit {unit if unit != '1' else 'none'}, {quantity.range_text()}")
     default = default_of(field)
     if default is not None:
         mark = ", assumed" if default.assumed else ""

@@ -113,7 +113,7 @@ class PairOption(FrictionOption):
     contact_table_sha256: str | None = optional("checksum of the contact table that is meant")
 
     @classmethod
-    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+    def complete_data(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
         table = with_checksum(table, "draws_file", folder, where)
         return with_checksum(
             table, "contact_table", folder, where, checksum_key="contact_table_sha256"
@@ -164,8 +164,9 @@ class PairOption(FrictionOption):
                 context.shoe.roughness.rq_or_estimate is not None,
                 context.floor.roughness.rq_or_estimate is not None,
             ),
-            shore_a_deviation=(material.shore_a and material.sourced("shore_a").uncertainty) or 0.0,
-            loss_tangent=range_95(material.sourced("loss_tangent")) or LOSS_TANGENTS,
+            shore_a_deviation=(material.shore_a and material.sourced_value("shore_a").uncertainty)
+            or 0.0,
+            loss_tangent=range_95(material.sourced_value("loss_tangent")) or LOSS_TANGENTS,
             sole_slope=_slope(surfaces[0]),
             floor_slope=_slope(surfaces[1]),
         )
@@ -180,9 +181,9 @@ class _Measured(FrictionOption):
     pair: str | None = optional("sole and floor it was measured on")
 
     def _optional(self, name: str) -> SourcedValue | None:
-        return None if getattr(self, name, None) is None else self.sourced(name)
+        return None if getattr(self, name, None) is None else self.sourced_value(name)
 
-    def measured(self, context: Context) -> BoundaryFriction | None:
+    def measured_friction(self, context: Context) -> BoundaryFriction | None:
         """Return what was measured with the case's own fluid, if anything."""
         from underfoot.friction import BoundaryFriction
 
@@ -193,7 +194,7 @@ class _Measured(FrictionOption):
             fluid=context.fluid,
             pair=self.pair or "",
             viscosity=viscosity,
-            cof_boundary=self.sourced("cof_bl"),
+            cof_boundary=self.sourced_value("cof_bl"),
             tau_hydro=self._optional("tau_hydro"),
             cof_asymptote=self._optional("cof_asymptote"),
         )
@@ -209,11 +210,11 @@ class BoundaryOption(_Measured):
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import BoundaryLaw, boundary_friction_at
 
-        others, measured = measured_fluids(context.catalogue), self.measured(context)
+        others, measured = measured_fluids(context.catalogue), self.measured_friction(context)
         if measured is None:
             measured = boundary_friction_at(_viscosity(context), others, fluid=context.fluid)
         hysteresis = self._optional("hysteresis_cof")
-        return BoundaryLaw.measured(measured, cof_hysteresis=hysteresis, others=others)
+        return BoundaryLaw.from_measured(measured, cof_hysteresis=hysteresis, others=others)
 
 
 class StribeckOption(_Measured):
@@ -230,7 +231,7 @@ class StribeckOption(_Measured):
     tau_hydro: Speed | None = optional("decay speed (Eq. 17)")
     cof_asymptote: Friction | None = optional("COF at high speed (Eq. 17)")
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         if self.cof_bl is None:
             return ("tau_hydro", "cof_asymptote", "hysteresis_cof")
         fall = ("tau_hydro", "cof_asymptote")
@@ -239,13 +240,13 @@ class StribeckOption(_Measured):
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import BoundaryLaw, StribeckLaw, stribeck_law_at
 
-        others, measured = measured_fluids(context.catalogue), self.measured(context)
+        others, measured = measured_fluids(context.catalogue), self.measured_friction(context)
         hysteresis = self._optional("hysteresis_cof")
         if measured is None:
             return stribeck_law_at(_viscosity(context), others, fluid=context.fluid)
         if measured.tau_hydro is None or measured.cof_asymptote is None:
-            return BoundaryLaw.measured(measured, cof_hysteresis=hysteresis, others=others)
-        return StribeckLaw.measured(measured, cof_hysteresis=hysteresis, others=others)
+            return BoundaryLaw.from_measured(measured, cof_hysteresis=hysteresis, others=others)
+        return StribeckLaw.from_measured(measured, cof_hysteresis=hysteresis, others=others)
 
 
 class AdhesionBlockingOption(FrictionOption):
@@ -277,11 +278,11 @@ class AdhesionBlockingOption(FrictionOption):
             AdhesionBlocking(
                 self.alpha,
                 self.beta,
-                self.sourced("alpha").source,
+                self.sourced_value("alpha").source,
                 **({} if self.load is None else {"normal_force": self.load}),
             ),
-            self.sourced("dry_adhesion_cof"),
-            self.sourced("hysteresis_cof"),
+            self.sourced_value("dry_adhesion_cof"),
+            self.sourced_value("hysteresis_cof"),
             _viscosity(context),
         )
 
@@ -299,7 +300,7 @@ class ConstantOption(FrictionOption):
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import ConstantLaw
 
-        part, whole = self.hysteresis_cof or 0.0, self.sourced("cof")
+        part, whole = self.hysteresis_cof or 0.0, self.sourced_value("cof")
         spread = whole.uncertainty  # of the sum: its parts only share it
         shared = spread, None if spread is None else 0.0
         return ConstantLaw(self.cof - part, part, whole.source, context.viscosity_value, *shared)
@@ -323,7 +324,7 @@ class _Mechanism(_Measured):
         "decay speed (Eq. 17): with it, cof_bl is a limit at low speed"
     )
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         limit = self.cof_bl is not None and self.tau_hydro is not None
         return () if limit else ("cof_bl", "tau_hydro")
 
@@ -336,7 +337,7 @@ class _Mechanism(_Measured):
             modulus=context.youngs_modulus,
             poisson_ratio=context.poisson_ratio,
             viscosity=_viscosity(context),
-            friction=self.measured(context),
+            friction=self.measured_friction(context),
             cof_hysteresis=self._optional("hysteresis_cof"),
             fine_roughness=self._optional("fine_roughness"),
             modulus_deviation=context.modulus.uncertainty,
@@ -386,8 +387,8 @@ class MeanFilmSharingOption(_Mechanism):
                 remedy="Give it, or choose friction.model = asperity_ehl",
             )
         effect = MeanFilmSharing(
-            radius=float(pin.sourced("method.reduced_radius", "m")),
-            normal_force=float(pin.sourced("method.normal_force", "N")),
+            radius=float(pin.sourced_value("method.reduced_radius", "m")),
+            normal_force=float(pin.sourced_value("method.normal_force", "N")),
             effective_modulus=2 * context.plane_strain_modulus,
             rq=rq,
             stiffness=context.plane_strain_modulus,
@@ -446,7 +447,7 @@ class BowdenTaborOption(FrictionOption):
 
         stiffness = context.plane_strain_modulus
         scale = _scale(context, context.interface.shortest_wave)
-        sourced = self.sourced("shear_strength")
+        sourced = self.sourced_value("shear_strength")
         return BowdenTaborLaw(
             ShearStrength(self.shear_strength, sourced.source, deviation=sourced.uncertainty),
             lambda pressure, _speed: scale.contact_fraction(np.asarray(pressure) / stiffness),
@@ -493,7 +494,7 @@ class TableOption(FrictionOption):
     hysteresis_cof: Friction | None = optional("hysteresis part, if measured")
 
     @classmethod
-    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+    def complete_data(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
         name = plain(table.get("table_file"))
         if not isinstance(name, str):
             return table
@@ -585,18 +586,18 @@ def measured_fluids(catalogue: Catalogue) -> tuple[BoundaryFriction, ...]:
         if leaf is None or leaf.assumed or entry.parents or "boundary.pair" not in entry.values:
             continue
         optional = {
-            key: entry.sourced(f"boundary.{key}", unit)
+            key: entry.sourced_value(f"boundary.{key}", unit)
             for key, unit in (("tau_hydro", "m/s"), ("cof_asymptote", "1"))
             if f"boundary.{key}" in entry.values
         }
-        viscosity = entry.sourced("viscosity", "Pa*s").value
+        viscosity = entry.sourced_value("viscosity", "Pa*s").value
         assert viscosity is not None
         fluids.append(
             BoundaryFriction(
                 fluid=name,
                 pair=entry.text("boundary.pair"),
                 viscosity=viscosity,
-                cof_boundary=entry.sourced("boundary.cof_bl", "1"),
+                cof_boundary=entry.sourced_value("boundary.cof_bl", "1"),
                 **optional,
             )
         )
@@ -610,9 +611,9 @@ def contact_deviation(
 
     Of the mean over its random surfaces, of the roughness measured, and of the shortest wave.
     """
-    area = table.sourced("real_contact_fraction", pressure, speed)
+    area = table.sourced_value("real_contact_fraction", pressure, speed)
     count = float(table.realizations.min())
-    between = (area.uncertainty or 0.0) / (area.value or 1.0) / math.sqrt(count)
+    between = (area.uncertainty or 0.0) / float(area) / math.sqrt(count)
     return math.hypot(between, context.rq_deviation or 0.0, SHORTEST_WAVE_DEVIATION)
 
 

@@ -92,7 +92,7 @@ class HeldMotion(Motion):
     def forward(self) -> bool:
         return not self.backward
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         return ("duration",) if self.steady else ()
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
@@ -150,7 +150,7 @@ class MotionFromHistory(Motion):
         return self.history_points[-1].speed >= 0
 
     @classmethod
-    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+    def complete_data(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
         table = dict(table)
         name, points = plain(table.get("history")), plain(table.get("history_points"))
         if isinstance(name, str):
@@ -183,7 +183,7 @@ class MotionFromHistory(Motion):
                 table.setdefault("shoe_angle", last["shoe_angle"])
         return table
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         return ("force_rise_time",)  # the history tells how the force rises
 
     def build(self) -> MotionHistory | None:
@@ -240,7 +240,7 @@ class FloorArray(Section):
         "has the array under its middle at the end"
     )
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         return _without_film(self, case)
 
 
@@ -265,5 +265,5 @@ class Sensor(Section):
     )
     array: FloorArray | None = None
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         return _without_film(self, case)

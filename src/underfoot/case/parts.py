@@ -77,7 +77,7 @@ def _nodes(
     """Yield path, field and section of all below a section; of a slot, that of all options."""
     if issubclass(model, Option) and not model.name:
         seen: set[str] = set()
-        for option in model.known().values():
+        for option in model.known_options().values():
             below = [node for node in _nodes(option, prefix) if node[0] not in seen]
             seen |= {path for path, *_ in below}
             yield from below
@@ -153,7 +153,7 @@ def sections_at(path: str) -> list[type[Section]]:
             field = model.model_fields.get(part)
             section = None if field is None else section_in(field)
             if section is not None and issubclass(section, Option) and not section.name:
-                below += section.known().values()
+                below += section.known_options().values()
             elif section is not None:
                 below.append(section)
         models = list(dict.fromkeys(below))
@@ -206,7 +206,7 @@ def unknown_path(path: str) -> InputError:
     error = unknown_name("path", path, beside)
     error.nearest = nearest_path(path)
     for at, slot in slot_table().items():
-        broken = "; ".join(slot.broken()) if path.startswith(f"{at}.") else ""
+        broken = "; ".join(slot.load_failures()) if path.startswith(f"{at}.") else ""
         if broken:
             error.remedy = Message("If it is a key of a package: {broken}", broken=broken)
     return error

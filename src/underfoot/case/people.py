@@ -143,5 +143,5 @@ class Walkers(Section):
         4, 4, "further full slips that it is tested on"
     )
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         return ("brake_time_mean", "brake_time_sd") if self.heel_brake == "none" else ()

@@ -39,7 +39,7 @@ class Quantity:
     remedy: str | None = None
     percent: bool = True
 
-    def allowed(self) -> str:
+    def range_text(self) -> str:
         """Return the range as a person reads it."""
         low, high = display(self.low, self.unit), display(self.high, self.unit)
         return (
@@ -71,7 +71,7 @@ class Quantity:
                 "range",
                 InputError(
                     Message("{text} is outside the physical range", text=text),
-                    allowed=self.allowed(),
+                    allowed=self.range_text(),
                     nearest=self._likely(text) if isinstance(given, str) else None,
                     remedy=self.remedy,
                 ),

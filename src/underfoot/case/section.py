@@ -223,7 +223,7 @@ class Section(BaseModel):
             return Origin(DEFAULT, leaf, value=value)
         return Origin(GIVEN, Leaf(plain_text(value, unit_of(field))), value=value)
 
-    def sourced(self, name: str) -> SourcedValue:
+    def sourced_value(self, name: str) -> SourcedValue:
         """Return a number of the section with its uncertainty, source and marks."""
         value, unit = getattr(self, name), unit_of(type(self).model_fields[name])
         if value is None:
@@ -247,7 +247,7 @@ class Section(BaseModel):
         )
 
     @classmethod
-    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+    def complete_data(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
         """Return the section's table with what it takes from files; paths count from ``folder``."""
         return table
 
@@ -255,7 +255,7 @@ class Section(BaseModel):
         """Return what of other packages it is computed with, beside its own class."""
         return None
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         """Return the fields of the section that count for nothing: this case reads them nowhere."""
         return ()
 
@@ -321,20 +321,20 @@ class Option(Section):
     @classmethod
     def options(cls) -> dict[str, type["Option"]]:
         """Return the options of the slot by name, those of other packages too where they load."""
-        list(cls.broken())  # ``underfoot doctor`` and who asks for it are told
-        return dict(cls.known())
+        list(cls.load_failures())  # ``underfoot doctor`` and who asks for it are told
+        return dict(cls.known_options())
 
     @classmethod
-    def broken(cls) -> Iterator[str]:
+    def load_failures(cls) -> Iterator[str]:
         """Yield what is wrong with each option that a package offers and that can't be loaded."""
-        for name in offers(cls.slot).keys() - cls.known().keys():
+        for name in offers(cls.slot).keys() - cls.known_options().keys():
             try:
                 find_offer(cls.slot, name, cls._wrong)
             except InputError as error:
                 yield error.what
 
     @classmethod
-    def known(cls) -> dict[str, type["Option"]]:
+    def known_options(cls) -> dict[str, type["Option"]]:
         """Return the options of the slot whose classes are defined by now."""
         return cls._known.get(cls.slot, {})
 
@@ -364,13 +364,13 @@ class Option(Section):
         name = given.get(cls.key) if origin is None else origin.leaf.given
         if name is None:
             keys = {key for key, value in given.items() if value is not None}
-            chosen = (o for o in cls.known().values() if keys & set(o.chosen_by))
-            option = next(chosen, None) or cls.known().get(cls.usual or "")
+            chosen = (o for o in cls.known_options().values() if keys & set(o.chosen_by))
+            option = next(chosen, None) or cls.known_options().get(cls.usual or "")
             if option is None:
                 error = InputError("is missing", allowed=", ".join(cls.options()))
                 raise refused_at(cls, (cls.key,), error, given)
             return option
-        option = cls.known().get(str(name))
+        option = cls.known_options().get(str(name))
         if option is not None:
             return option
         all_offers.cache_clear()  # a package may have been installed since

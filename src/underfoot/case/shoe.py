@@ -107,7 +107,7 @@ class Material(Section):
     sha256: str | None = optional("checksum of the file that is meant; another file is refused")
 
     @classmethod
-    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+    def complete_data(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
         table = with_checksum(table, "file", folder, where)
         name = plain(table.get("file"))
         if not isinstance(name, str):
@@ -126,7 +126,7 @@ class Material(Section):
             table = {**table, "relaxation": spectrum}
         return with_file_values(table, values, name)
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         by_law = set(BY_LAW) - set(case.friction.compound)
         if self.modulus is None:
             by_law -= {"shore_a"}  # the modulus is made of it
@@ -204,7 +204,7 @@ class Midsole(Section):
     thickness: Length
     poisson_ratio: Poisson = default(0.3, 0.3, "foam", assumed=True)
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         return () if case.compliance.layers else tuple(type(self).model_fields)
 
 
@@ -219,7 +219,7 @@ class SoleLayers(Section):
         """Outsole and midsole together, m."""
         return self.outsole_thickness + (self.midsole.thickness if self.midsole else 0.0)
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         return () if case.compliance.layers else ("outsole_thickness",)
 
 
@@ -257,7 +257,7 @@ class OutsoleFile(Section):
     )
 
     @classmethod
-    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+    def complete_data(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
         return with_checksum(table, "file", folder, where)
 
     def code(self) -> Any:
@@ -350,7 +350,7 @@ class Shoe(_Classed):
             )
 
     @classmethod
-    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+    def complete_data(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
         outsole = table.get("outsole")
         if outsole is None:
             return {key: item for key, item in table.items() if key != "outsole"}

@@ -74,7 +74,7 @@ class SurfaceRoughness(Section):
     )
 
     @classmethod
-    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+    def complete_data(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
         table = with_checksum(table, "file", folder, where)
         if not isinstance(plain(table.get("file")), str):
             return table
@@ -117,7 +117,7 @@ class SurfaceRoughness(Section):
         """
         return min(1.0, (longest / (self.cutoff or longest)) ** hurst)
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         forms = ("rq", "ra", "rz")  # the first that is known counts
         known = [name for name in forms if getattr(self, name) is not None]
         scan = ("length_unit", "height_unit", "spacing") if self.file is None else ()
@@ -131,12 +131,12 @@ class SurfaceRoughness(Section):
         That of Rz / 5.7 holds that it may be Rz / 8 to Rz / 4 (95 %).
         """
         if self.rq is not None:
-            return self.sourced("rq").uncertainty
+            return self.sourced_value("rq").uncertainty
         if self.ra is None and self.rz is not None:
             form = math.log(RZ_SPREAD[1] / RZ_SPREAD[0]) / (2 * 1.96)
-            read = (self.sourced("rz").uncertainty or 0.0) / self.rz
+            read = (self.sourced_value("rz").uncertainty or 0.0) / self.rz
             return math.hypot(form, read) * (self.rq_or_estimate or 0.0)
-        spread = self.sourced("ra").uncertainty
+        spread = self.sourced_value("ra").uncertainty
         return spread and RQ_PER_RA * spread
 
     def density(self, wavenumber: ArrayLike) -> Array:
@@ -317,7 +317,7 @@ class CompositeInterface(Interface):
             return self.roughness_beyond_cutoff * rq
         return roughness.moment(0, STYLUS_WAVES[0], self.longest_wave)
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         if not (case.shoe.roughness.file and case.floor.roughness.file):
             return ()
         read = WAVES[0] in case.friction.reads
@@ -330,7 +330,7 @@ class CompositeInterface(Interface):
         return math.hypot(*known) / squares if known and squares > 0 else None
 
     def leak_deviation(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> float:
-        beyond, parts = self.sourced("roughness_beyond_cutoff"), []
+        beyond, parts = self.sourced_value("roughness_beyond_cutoff"), []
         assumed = BEYOND_DEVIATION if beyond.assumed else 0.0
         factor = (beyond.uncertainty or 0.0) / self.roughness_beyond_cutoff or assumed
         scanned = 0.0
@@ -360,10 +360,10 @@ class MeasuredInterface(Interface):
     )
 
     def rq(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> SourcedValue:
-        return self.sourced("effective_rq")
+        return self.sourced_value("effective_rq")
 
     def rq_deviation(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> float | None:
-        spread = self.sourced("effective_rq").uncertainty
+        spread = self.sourced_value("effective_rq").uncertainty
         return None if spread is None else spread / self.effective_rq
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:

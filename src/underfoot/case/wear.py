@@ -52,7 +52,7 @@ class Wear(Option):
     def build(self) -> SoleWear | WearOnSole | None:
         """Return what is worn away as geometry; None where a contact must be solved for it."""
 
-    def unused(self, case: CaseView) -> tuple[str, ...]:
+    def unused_keys(self, case: CaseView) -> tuple[str, ...]:
         edges = ("edge_radius",) if is_bare(case) else ()
         if self.depth > 0:
             return edges

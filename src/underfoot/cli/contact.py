@@ -111,12 +111,12 @@ def contact(
             remedy = "Add --overwrite to replace it"
             raise InputError(Message("{out} exists", out=file), where="--table", remedy=remedy)
 
-        def made(progress: Progress) -> "ContactTable":
+        def make_table(progress: Progress) -> "ContactTable":
             contact_table = measured_table(surface, rubber, **given, progress=progress)
             contact_table.save(file)
             return contact_table
 
-        shared.answer(file.stem, made)
+        shared.answer(file.stem, make_table)
         if not shared.json:
             print(f"\n{file} is written. A case beside it takes it with these lines:\n")
             print(f'[rough_contact]\nfile = "{file.name}"')

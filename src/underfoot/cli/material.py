@@ -85,7 +85,7 @@ def material(
         "hardness": reading,
     }
 
-    def made(progress: Progress) -> Compound:
+    def make_compound(progress: Progress) -> Compound:
         progress("Reading the tests", 0.0)
         found = compound_from_files(files or [], **sizes, **more)
         if out is not None:
@@ -105,7 +105,7 @@ def material(
 
     answer(
         "compound",
-        made,
+        make_compound,
         out=out.with_suffix("") if out is not None and files else None,
         overwrite=shared.overwrite,
         json=shared.json,

@@ -141,7 +141,7 @@ def as_data(chosen: MicroCase, results: list[MicroResult]) -> dict[str, Any]:
     return {
         "name": chosen.name,
         "solver": chosen.solver,
-        "block": chosen.described(),
+        "block": chosen.describe_case(),
         "assumed": list(chosen.assumed),
         "results": rows,
     }

@@ -54,7 +54,7 @@ def surface(
             Message("{out} exists", out=out), where="--out", remedy="Add --overwrite to replace it"
         )
 
-    def made() -> Scan:
+    def make_scan() -> Scan:
         found = read()
         if file is not None:
             write_surface(found.surface, file)
@@ -62,7 +62,7 @@ def surface(
 
     answer(
         scan.name,
-        lambda progress: made(),
+        lambda progress: make_scan(),
         out=None if file is not None else out,
         overwrite=shared.overwrite,
         json=shared.json,

@@ -86,7 +86,7 @@ def contact_friction(
     plain = law if drawn_law is None else law_on(drawn_law, at)
     if isinstance(law, EdgedLaw):
         lugs = law.lugs(*values)
-        pull = case.sourced("film.suction")
+        pull = case.sourced_value("film.suction")
         pull = pull if pull.uncertainty else replace(pull, uncertainty=numbers.SUCTION_SPREAD)
         suction = pull, lugs.suction_share(parts)
     if isinstance(plain, EdgedLaw):

@@ -22,6 +22,7 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.core import ConvergenceError, InputError, Progress, SourcedValue, Status, silent
 from underfoot.core.arrays import Array
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.remark import Message
 from underfoot.core.threads import threads_limited
 from underfoot.shoe import SoleMap
@@ -160,7 +161,7 @@ class Continuation:
         return stated_effects(self._parts, self.contact)
 
     @threads_limited(1)
-    def continued(self, changes: Mapping[str, Any], *, drawn: bool = True) -> Preview:
+    def continue_march(self, changes: Mapping[str, Any], *, drawn: bool = True) -> Preview:
         """Return what the changes (path in the case: new value) make of the contact.
 
         ``drawn`` False leaves out the spread of the law.
@@ -188,7 +189,7 @@ class Continuation:
                 film, contact = (max(values[load], 0.0) for load in LOADS)
                 each = {name.removeprefix("cof_"): max(values[name], 0.0) for name in COF_PARTS}
                 sampled = replace(sampled, **sampled.law.at(contact / (film + contact), **each))
-                cof, draws = sampled.sourced("cof", cof), sampled.cof
+                cof, draws = sampled.sourced_value("cof", cof), sampled.cof
         return Preview(
             dict(changes),
             cof,
@@ -203,6 +204,8 @@ class Continuation:
             time.process_time() - began,
         )
 
+    continued = renamed_member("continued", "continue_march", gone="0.4")
+
     @cached_property
     def _unchanged(self) -> dict[str, float]:
         parts, _, second = self._steps(self.case)
@@ -214,7 +217,7 @@ class Continuation:
         if (case.motion.shoe_angle, case.motion.speed) != (angle, speed) and not has_lugs(case):
             raise InputError(
                 "the shoe angle or the speed of a sole without lugs changes",
-                where="continued",
+                where="continue_march",
                 allowed="fluid, load, wear, hardness, roughness",
                 remedy="Run the changed case",
             )
@@ -225,7 +228,7 @@ class Continuation:
         if not same or np.count_nonzero(land != before) > MOST_CHANGED * before.sum():
             raise InputError(
                 "the plan of the sole or the grid changes",
-                where="continued",
+                where="continue_march",
                 allowed="fluid, speed, load, angle, wear, hardness, roughness",
                 remedy="Run the changed case",
             )
@@ -237,7 +240,7 @@ def preview(
     case: Case, changes: Mapping[str, Any], *, quick: bool = True, progress: Progress = silent
 ) -> Preview:
     """Return the preview of a changed case; the march of the case is kept for the next call."""
-    return kept_continuation(case, quick=quick, progress=progress).continued(changes)
+    return kept_continuation(case, quick=quick, progress=progress).continue_march(changes)
 
 
 def kept_continuation(

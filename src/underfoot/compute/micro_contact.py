@@ -75,7 +75,7 @@ def micro_contact(parts: Prepared, contact: SoleContact) -> MicroContact | None:
     rq = parts.context.rq_deviation or 0.0
     spreads = []
     for quantity, error in (("mean_gap", GAP_ERROR), ("flow_factor_along", FLOW_ERROR)):
-        value = table.sourced(quantity, *at)
+        value = table.sourced_value(quantity, *at)
         mean = (value.uncertainty or 0.0) / math.sqrt(float(table.realizations.min()))
         spreads.append(math.hypot(mean / max(float(value), 1e-30), rq, error))
     deviation = contact_deviation(table, *at, parts.context)

@@ -94,7 +94,7 @@ def scalars(
     draws = None if sampled is None else sampled.cof
     probability, risk = slip_probability(case, friction.cof, draws, model)
 
-    def computed(value: float, unit: str, note: str = "") -> SourcedValue:
+    def computed_value(value: float, unit: str, note: str = "") -> SourcedValue:
         return SourcedValue(
             value, unit, source="coupled contact and film", reason=_NOT_ESTIMATED, note=note
         )
@@ -108,13 +108,13 @@ def scalars(
         "cof_adhesion": friction.cof_adhesion,
         "cof_hysteresis": friction.cof_hysteresis,
         "cof_viscous": friction.cof_viscous,
-        "normal_force": case.sourced("motion.normal_force"),
-        "fluid_load": computed(contact.fluid_load, "N"),
+        "normal_force": case.sourced_value("motion.normal_force"),
+        "fluid_load": computed_value(contact.fluid_load, "N"),
         "fluid_load_sensor": sensor.load,
-        "peak_fluid_pressure": computed(float(contact.fluid_pressure.max()), "Pa"),
+        "peak_fluid_pressure": computed_value(float(contact.fluid_pressure.max()), "Pa"),
         "peak_fluid_pressure_sensor": sensor.peak_pressure,
-        "contact_area": computed(contact_area(contact), "m^2", "apparent, on the grid"),
-        "minimum_film_thickness": computed(thinnest, "m")
+        "contact_area": computed_value(contact_area(contact), "m^2", "apparent, on the grid"),
+        "minimum_film_thickness": computed_value(thinnest, "m")
         if thinnest is not None
         else SourcedValue(None, "m", reason="no fluid: no film"),
         "slip_probability": probability,
@@ -194,7 +194,7 @@ def with_stated(
 
 def required_friction(case: Case) -> RcofPopulation:
     """Return what the people of a case need on its floor, down its slope if it has one."""
-    mean, sd, slope = map(case.sourced, ("risk.rcof_mean", "risk.rcof_sd", "floor.slope"))
+    mean, sd, slope = map(case.sourced_value, ("risk.rcof_mean", "risk.rcof_sd", "floor.slope"))
     # the case itself lists an assumed required friction, so the population need not do so again
     level = RcofPopulation(
         case.risk.rcof_mean,
@@ -224,7 +224,7 @@ def slip_probability(
 
     ``draws`` (n,) of the friction stand for its spread; ``model`` takes the place of the case's.
     """
-    mean, spread = case.sourced("risk.rcof_mean"), case.sourced("risk.rcof_sd")
+    mean, spread = case.sourced_value("risk.rcof_mean"), case.sourced_value("risk.rcof_sd")
     risk = slip_risk(
         acof, rcof=required_friction(case), model=model or case.risk.build(), samples=draws
     )
@@ -255,7 +255,7 @@ def undetermined_numbers(case: Case, status: Status) -> dict[str, SourcedValue]:
     }
     names = ("cof", "cof_adhesion", "cof_hysteresis", "cof_viscous", *units, "slip_probability")
     scalars = {name: SourcedValue(None, units.get(name, "1"), reason=str(status)) for name in names}
-    return {**scalars, "normal_force": case.sourced("motion.normal_force")}
+    return {**scalars, "normal_force": case.sourced_value("motion.normal_force")}
 
 
 def regime(share: float) -> dict[str, str]:

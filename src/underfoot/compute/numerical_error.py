@@ -74,7 +74,7 @@ class NumericalErrors:
         """Return the standard deviation of a number, grid and steps together."""
         return math.hypot(self.grid[name], self.steps.get(name, 0.0))
 
-    def added(self, values: Mapping[str, SourcedValue]) -> dict[str, SourcedValue]:
+    def widen_numbers(self, values: Mapping[str, SourcedValue]) -> dict[str, SourcedValue]:
         """Return the numbers with these errors in their uncertainty, interval and note.
 
         Not in those of COF, whose draws have it.
@@ -232,18 +232,20 @@ def errors_by_steps(
         return {}
     own, finer = positions.in_time
 
-    def moved(*names: str) -> float:
+    def share_moved(*names: str) -> float:
         whole = sum(own[name] for name in names)
         return 2 * sum(abs(finer[name] - own[name]) for name in names) / whole if whole else 0.0
 
     at = positions.values
-    errors = {name: math.hypot(moved(name), IN_TIME) * positions.answer(name) for name in numbers}
+    errors = {
+        name: math.hypot(share_moved(name), IN_TIME) * positions.answer(name) for name in numbers
+    }
     film, solid = np.clip(at["fluid_load"] / force, 0.0, 1.0), sum(at[name] for name in ON_CONTACT)
     odds = [float(log_film_odds(*(one[load] for load in LOADS))) for one in positions.in_time]
     swing = math.hypot(2 * (odds[1] - odds[0]), IN_TIME)
     errors["fluid_load"] = swing * float((film * (1 - film)).mean()) * force
     errors["cof"] = math.hypot(
-        moved(*COF_PARTS) * positions.answer("cof"), IN_TIME * float((film * solid).mean())
+        share_moved(*COF_PARTS) * positions.answer("cof"), IN_TIME * float((film * solid).mean())
     )
     return errors
 
@@ -290,14 +292,14 @@ def _wider(
     Both join as ln v / (1 - v / most), which keeps the ends in between.
     """
 
-    def turned(number: float) -> float:
+    def log_odds(number: float) -> float:
         share = min(max(number / value, 1e-6), (1 - 1e-9) * most / value)
         return math.log(share / (1 - share * value / most))
 
     width = 1.96 * error / (value * (1 - value / most))
     result = []
     for end, sign in zip(ends, (-1, 1), strict=True):
-        odds = math.exp(turned(value) + sign * math.hypot(turned(end) - turned(value), width))
+        odds = math.exp(log_odds(value) + sign * math.hypot(log_odds(end) - log_odds(value), width))
         result.append(value * odds / (1 + odds * value / most))
     return result[0], result[1]
 

@@ -70,7 +70,7 @@ class UncertainBevel:
         path = "shoe.heel.profile.angle"
         if path in case.idle_paths or not case.value(path):
             return None
-        angle = case.sourced(path)
+        angle = case.sourced_value(path)
         deviation = angle.uncertainty or FACET_DEVIATION * angle.assumed
         name, seed = content_hash(case.named_values("shoe.heel.")), case.numerics.seed
         return cls(deviation, not angle.uncertainty, name, seed) if deviation else None
@@ -125,7 +125,7 @@ class TreadPositions:
         """Return the scalar of the result: its mean over the places."""
         return float(self.values[name].mean())
 
-    def drawn(self, name: str, count: int) -> Array:
+    def draw_scalar(self, name: str, count: int) -> Array:
         """Return the scalar (count,) at each place in turn, drawn over the angle and the bevel.
 
         The angle moves the load on the film by its odds, and adds to other numbers.
@@ -174,16 +174,16 @@ class TreadPositions:
             parts = {name.removeprefix("cof_"): self._each(name, count) for name in COF_PARTS}
             law = sampled.law
 
-            def drawn(*, bevel: bool) -> dict[str, Array]:
+            def draw_law(*, bevel: bool) -> dict[str, Array]:
                 more_odds = self._more_odds(count, bevel=bevel)
                 return law.at(contact / (film + contact), **parts, more_odds=more_odds)
 
-            draws = drawn(bevel=True)
+            draws = draw_law(bevel=True)
             more = {self.origin: float(np.var(values["cof"]))}
             if self.by_angle:
                 more["shoe_angle"] = self.by_angle["cof"] ** 2
             if self.bevel:
-                more["bevel"] = float(np.var(draws["cof"] - drawn(bevel=False)["cof"]))
+                more["bevel"] = float(np.var(draws["cof"] - draw_law(bevel=False)["cof"]))
             law_variance = float(np.var(sampled.cof))
             whole = law_variance + sum(more.values())
             share = {name: each * law_variance / whole for name, each in sampled.share.items()}
@@ -191,14 +191,14 @@ class TreadPositions:
             sampled = replace(sampled, share=share, **draws)
             for name, value in new.items():
                 if value.uncertainty is not None:  # what the law leaves open stays open
-                    new[name] = sampled.sourced(name.removeprefix("cof_"), value)
+                    new[name] = sampled.sourced_value(name.removeprefix("cof_"), value)
             note = Message("spread of the friction law, its inputs and the {held}", held=self.held)
             new["cof"] = replace(new["cof"], note=note)
         load = self.answer("fluid_load")
         force = self.answer("cof") * friction.normal_force
         return replace(friction, **new, fluid_load=load, friction_force=force), sampled
 
-    def averaged(self, numbers: Mapping[str, SourcedValue]) -> dict[str, SourcedValue]:
+    def average_numbers(self, numbers: Mapping[str, SourcedValue]) -> dict[str, SourcedValue]:
         """Return the numbers with means over the positions, and the spread of COF over them."""
         means = dict(numbers)
         if len(self.places) == 1:

@@ -109,18 +109,18 @@ def prepare_case(
     objects = dict(objects or {})
     context = resolve_context(case, progress)
 
-    def chosen(slot: str, build: Callable[[], Any]) -> Any:
+    def build_slot(slot: str, build: Callable[[], Any]) -> Any:
         return objects[slot] if slot in objects else with_members(slot, build(), f"{slot}.model")
 
     film = objects["film"] if "film" in objects else case.film.build(context)
-    law = chosen("friction", lambda: case.friction.build(context))
+    law = build_slot("friction", lambda: case.friction.build(context))
     sole = geometry[0] if geometry else sole_map(case, spacing, progress)
     if "friction" not in objects:
         law = of_known_class(law, case, sole)
     law = with_known_tread(law, case, context, sole)
     if film is not None and not isinstance(film, NewtonianFilm):
         law = FilmShearLaw(law, with_members("film", film, "film.model"))
-    asperities = chosen("rough_contact", lambda: case.rough_contact.build(context))
+    asperities = build_slot("rough_contact", lambda: case.rough_contact.build(context))
 
     def compliance() -> Compliance:
         return geometry[1] if geometry else case.compliance.build(context, sole)
@@ -130,11 +130,11 @@ def prepare_case(
         context=context,
         spacing=spacing,
         sole=sole,
-        compliance=chosen("compliance", compliance),
+        compliance=build_slot("compliance", compliance),
         asperities=asperities,
         law=law,
         local_law=edged_law(case, context, law, sole, asperities) or law,
-        slip_model=chosen("risk", case.risk.build),
+        slip_model=build_slot("risk", case.risk.build),
         film=film,
         objects=objects,
     )

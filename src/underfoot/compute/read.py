@@ -72,7 +72,7 @@ def readings(
         cof, name = friction.cof, numbers.sole_name(case)
         error = errors.deviation("cof")
         sampled = with_numerical_error(sampled, error, cof=float(cof), sole=name)
-        friction = replace(friction, cof=sampled.sourced("cof", cof))
+        friction = replace(friction, cof=sampled.sourced_value("cof", cof))
     sensor = solution.sensor
     values, risk = numbers.scalars(case, contact, friction, sensor, sampled, parts.slip_model)
     values |= later_numbers(parts, contact) | steady_slide(parts, contact)
@@ -80,9 +80,9 @@ def readings(
     micro = micro_contact(parts, contact)
     values |= {} if micro is None else micro.scalars()
     if positions:
-        values = positions.averaged(values)
+        values = positions.average_numbers(values)
     values = with_steadiness(values)
-    drawn = positions.drawn if positions else None
+    drawn = positions.draw_scalar if positions else None
     values = numbers.with_film_spread(
         values, solution.friction.film_odds, drawn, solution.friction.stated
     )
@@ -110,7 +110,7 @@ def readings(
         labels["film_heel_basis"] = Message("with lengths of the heel that nobody measured")
     labels |= _remarks(parts, solution, remarks) | solution.stated.labels()
     if isinstance(errors, NumericalErrors):
-        values = errors.added(values)
+        values = errors.widen_numbers(values)
         errors = errors.sentence(values)
     labels["grid_error"] = errors
     if overload:

@@ -71,6 +71,6 @@ def youngs_modulus(case: Case) -> tuple[SourcedValue, list[Breach]]:
     """Return the outsole's Young's modulus: measured, or from hardness by the chosen relation."""
     material = case.shoe.material
     if case.hardness is None:
-        return material.sourced("modulus"), []
+        return material.sourced_value("modulus"), []
     assert material.shore_a is not None  # the case checks that one of the two is there
     return case.hardness.build(material.shore_a)

@@ -301,8 +301,8 @@ class Result(Presentable):
                 labels=from_stored(stored["labels"]),
                 data=fields,
                 status=Status(stored["status"]["value"]),
-                breaches=tuple(map(Remark.stored, stored["breaches"])),
-                assumptions=tuple(map(Remark.stored, stored["assumptions"])),
+                breaches=tuple(map(Remark.from_stored, stored["breaches"])),
+                assumptions=tuple(map(Remark.from_stored, stored["assumptions"])),
                 provenance=_from_known_fields(Provenance, provenance),
                 case_text=case_text,
             )

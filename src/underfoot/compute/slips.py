@@ -75,23 +75,23 @@ def slip_population(
                 allowed=Message("at most {name}_to", name=name),
             )
 
-    def spread(path: str, low: float, high: float) -> Spread:
-        mean, sd = case.sourced(f"{path}_mean"), case.value(f"{path}_sd")
+    def spread_of(path: str, low: float, high: float) -> Spread:
+        mean, sd = case.sourced_value(f"{path}_mean"), case.value(f"{path}_sd")
         assert mean.value is not None
         least = max(mean.value - WIDE * sd, mean.value / 2)  # of people unlike adults on the level
         ends = min(low, least), max(high, mean.value + WIDE * sd)
         return Spread(mean.value, sd, *ends, mean.source, mean.assumed)
 
-    angle, asked = case.motion.shoe_angle, case.sourced("risk.rcof_mean")
+    angle, asked = case.motion.shoe_angle, case.sourced_value("risk.rcof_mean")
     needed = required_friction(case)
     return Population(
         subjects=people.subjects if subjects is None else subjects,
         seed=people.seed,
         histories=tuple(histories) if histories else packaged_histories(),
-        mass=spread("slip.mass", 20.0, 200.0),
+        mass=spread_of("slip.mass", 20.0, 200.0),
         rcof=Spread(needed.mean, needed.sd, 0.0, 1.0, asked.source, asked.assumed),
-        walking_speed=spread("slip.walking_speed", 0.5, 2.5),
-        heel_speed=spread("slip.heel_speed", 0.02, 2.0),
+        walking_speed=spread_of("slip.walking_speed", 0.5, 2.5),
+        heel_speed=spread_of("slip.heel_speed", 0.02, 2.0),
         shoe_angle=Spread(
             angle,
             people.shoe_angle_sd,
@@ -105,7 +105,7 @@ def slip_population(
         recorded_angle=people.shoe_angle == "recorded",
         rcof_step=Spread(0.0, people.rcof_step_sd, -0.2, 0.2, "slip.rcof_step_sd", False),
         heel_brake=people.heel_brake,
-        brake_time=spread("slip.brake_time", 0.004, 0.2),
+        brake_time=spread_of("slip.brake_time", 0.004, 0.2),
         weight_transfer=(people.weight_transfer_from, people.weight_transfer_to),
     )
 

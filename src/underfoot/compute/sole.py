@@ -107,7 +107,7 @@ def sole_map(
         return file_sole_map(case, spacing, shift=shift, turn=turn, yaw=yaw)
     shape = sole_shape(case, progress)
     if shape.tread is not None and (any(shift) or yaw):
-        tread = shape.tread.moved(shift)
+        tread = shape.tread.shift_grooves(shift)
         if yaw:
             tread = replace(tread, yaw=yaw, pivot=(landing_front(case), 0.0))
         shape = cast("SoleShape", replace(cast("Any", shape), tread=tread))
@@ -201,8 +201,8 @@ def sole_shape(case: Case, progress: Progress = silent) -> SoleShape:
         return new
     removed = wear.build()
     if removed is None:
-        return new.worn(archard_state(case, progress=progress).worn)
-    return new.worn(removed)
+        return new.with_wear(archard_state(case, progress=progress).worn)
+    return new.with_wear(removed)
 
 
 def archard_state(case: Case, *, progress: Progress = silent) -> ArchardStep:

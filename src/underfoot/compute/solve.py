@@ -114,7 +114,7 @@ def stated_effects(
     beside = not has_lugs(parts.case) and parts.case.numerics.tread_positions > 1
     turns = shoe_angles() if beside else (TreadPlace(),)
 
-    def stepped(case: Case) -> Numbers | None:
+    def step_case(case: Case) -> Numbers | None:
         same = all(getattr(case.shoe, name) == getattr(parts.case.shoe, name) for name in OF_PLAN)
         if not (steady and same and case.motion.shoe_angle == parts.case.motion.shoe_angle):
             return None
@@ -126,7 +126,7 @@ def stated_effects(
         usable = all(end.status.usable for end in ends)
         return _mean([place_numbers(here, end) for end in ends]) if usable else None
 
-    def marched(cases: Sequence[Case]) -> list[Numbers | None]:
+    def march_cases(cases: Sequence[Case]) -> list[Numbers | None]:
         asked = [(k, place) for k, case in enumerate(cases) for place in effect_places(case)]
         numbers = _NumbersOfCases(tuple(cases), _effect_spacing(parts), parts.objects)
         ended: list[list[Numbers]] = [[] for _ in cases]
@@ -137,7 +137,7 @@ def stated_effects(
                 ended[asked[index][0]].append(each)
         return [_mean(each) for each in ended]
 
-    return solved_effects(parts.case, stepped, marched)
+    return solved_effects(parts.case, step_case, march_cases)
 
 
 def effect_places(case: Case) -> tuple[TreadPlace, ...]:
@@ -194,8 +194,8 @@ def film_spreads(
     if isinstance(law, TabulatedLaw) and rough is not None:
         gap, flow = 1 + rough.gap_deviation, 1 + rough.flow_deviation
         changed = {
-            GAP: (law.changed(1 / gap, 1.0), law.changed(gap, 1.0)),
-            FLOW: (law.changed(1.0, 1 / flow), law.changed(1.0, flow)),
+            GAP: (law.change_gap_and_flow(1 / gap, 1.0), law.change_gap_and_flow(gap, 1.0)),
+            FLOW: (law.change_gap_and_flow(1.0, 1 / flow), law.change_gap_and_flow(1.0, flow)),
         }
     elif deviation := parts.context.leak_deviation:
         leaks = (_leaking(parts, math.exp(sign * deviation)) for sign in (-1, 1))
@@ -240,7 +240,7 @@ def film_odds(contact: SoleContact) -> float:
 
 def _leaking(parts: Prepared, factor: float) -> PressureGapLaw:
     """Return the rough contact on ``factor`` times the roughness that lets fluid leak."""
-    rq = parts.context.rq.scaled(factor)
+    rq = parts.context.rq.scale_value(factor)
     return parts.case.rough_contact.build(replace(parts.context, rq=rq))
 
 

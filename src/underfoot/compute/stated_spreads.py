@@ -146,7 +146,7 @@ def sum_of_draws(draws: Mapping[str, Mapping[str, Array]], name: str) -> Array |
 
 def exactly(case: Case, path: str) -> SourcedValue:
     """Return the number of a case as one without a spread."""
-    return replace(case.sourced(path), uncertainty=0.0, assumed=False)
+    return replace(case.sourced_value(path), uncertainty=0.0, assumed=False)
 
 
 def stated_paths(case: Case) -> Iterator[str]:
@@ -185,7 +185,7 @@ def stated_spreads(case: Case) -> tuple[StatedSpread, ...]:
         section = path.partition(".")[0]
         if section in NOT_SOLVED or path in fluid_paths or _drawn_without(case, path):
             continue
-        value, deviation = float(case.value(path)), case.sourced(path).uncertainty or 0.0
+        value, deviation = float(case.value(path)), case.sourced_value(path).uncertainty or 0.0
         ends, offset = _ends(value, deviation)
         changed = tuple({path: end} for end in ends)
         spreads.append(StatedSpread(path, _subject(case, path), offset, changed))
@@ -309,7 +309,7 @@ def _subject(case: Case, path: str) -> str:
     """
     if path == HARDNESS:
         return f"hardness {case.shoe.material.polymer}"
-    value, deviation = case.value(path), case.sourced(path).uncertainty
+    value, deviation = case.value(path), case.sourced_value(path).uncertainty
     name = f"{path} {value:.6g} {deviation:.6g}"
     if not path.startswith("shoe."):
         return name

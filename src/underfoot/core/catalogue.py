@@ -16,6 +16,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, ClassVar
 
+from .deprecation import renamed_member
 from .errors import InputError, unknown_name
 from .files import checksum, read_toml
 from .leaves import FrozenTable, Leaf, leaves
@@ -59,9 +60,11 @@ class Entry:
                 where=self._where(path),
             ) from None
 
-    def sourced(self, path: str, unit: str | None = None) -> SourcedValue:
+    def sourced_value(self, path: str, unit: str | None = None) -> SourcedValue:
         """Return a number in SI with its source; ``unit`` None takes the unit that fits."""
-        return self.leaf(path).sourced(unit, where=self._where(path))
+        return self.leaf(path).sourced_value(unit, where=self._where(path))
+
+    sourced = renamed_member("sourced", "sourced_value", gone="0.4")
 
     def numbers(self, path: str, unit: str | None = None) -> tuple[float, ...]:
         """Return a list of numbers in SI."""
@@ -69,7 +72,7 @@ class Entry:
         if not isinstance(leaf.given, list | tuple):
             raise InputError(Message("{given} is no list", given=repr(leaf.given)), where=where)
         values = (
-            replace(leaf, given=given).sourced(unit, where=f"{where}[{index}]").value
+            replace(leaf, given=given).sourced_value(unit, where=f"{where}[{index}]").value
             for index, given in enumerate(leaf.given)
         )
         return tuple(float(value or 0.0) for value in values)

@@ -19,7 +19,8 @@ def renamed_member(old: str, new: str, *, gone: str) -> Callable[..., Any]:
     """
 
     def answer(self: Any, *arguments: Any, **options: Any) -> Any:
-        message = f"{type(self).__name__}.{old} is {new} now; the old name goes in {gone}"
+        kind = self if isinstance(self, type) else type(self)  # of a class method
+        message = f"{kind.__name__}.{old} is {new} now; the old name goes in {gone}"
         warn(message, FutureWarning, stacklevel=2)
         member = getattr(self, new)
         return member(*arguments, **options) if callable(member) else member

@@ -43,7 +43,7 @@ class Leaf:
     note: str = ""
     erratum: str = ""
 
-    def sourced(self, unit: str | None = None, *, where: str) -> SourcedValue:
+    def sourced_value(self, unit: str | None = None, *, where: str) -> SourcedValue:
         """Return the value in SI; ``unit`` None takes the SI unit that fits the text."""
         if unit is None:
             unit = si_unit(self.given, where=where) if isinstance(self.given, str) else "1"

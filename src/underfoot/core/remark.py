@@ -146,7 +146,7 @@ class Remark(Message):
         return cls(about, whole.code, **whole.values)
 
     @classmethod
-    def stored(cls, line: Any) -> Self:
+    def from_stored(cls, line: Any) -> Self:
         """Return the remark that a file of results holds: ``stored_form``, or an old line of text.
 
         Its text is made anew, in the units of who asks.

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
+from underfoot.core.deprecation import renamed_member
+
 from .errors import DataError
 from .remark import Message
 from .unit_text import display
@@ -55,7 +57,7 @@ class SourcedValue:
         """Return plain data for JSON and CSV."""
         return {name: getattr(self, name) for name in self.__slots__}
 
-    def scaled(self, factor: float) -> "SourcedValue":
+    def scale_value(self, factor: float) -> "SourcedValue":
         """Return the value, its uncertainties and its interval times a factor, 0 or more."""
         ends = self.interval
         numbers = {name: getattr(self, name) for name in ("value", "uncertainty", "numerical")}
@@ -67,3 +69,5 @@ class SourcedValue:
             },
             interval=None if ends is None else (factor * ends[0], factor * ends[1]),
         )
+
+    scaled = renamed_member("scaled", "scale_value", gone="0.4")

@@ -202,7 +202,7 @@ def read_distribution(path: str, given: Any, known: Catalogue) -> Distribution:
                 Message(
                     "reaches {value} at {share:.1%} of it", value=display(value, unit), share=share
                 ),
-                allowed=quantity.allowed(),
+                allowed=quantity.range_text(),
                 remedy="Narrow it, or take lognormal for what is positive",
             )
     return replace(distribution, low=quantity.low, high=quantity.high)
@@ -237,7 +237,7 @@ def value_at(path: str, given: Any, known: Catalogue, where: str = "") -> Any:
         raise RangeError(
             Message("{text} is outside the physical range", text=given),
             where=where,
-            allowed=quantity.allowed(),
+            allowed=quantity.range_text(),
         )
     return value
 

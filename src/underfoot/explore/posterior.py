@@ -191,7 +191,7 @@ def _log_density(places: Array, models: Sequence[Surrogate], readings: Sequence[
     delta = DISCREPANCY * _half_normal(points[:, -1])
     log_density = np.where(inside, 0.0, -np.inf)
     for model, reading in zip(models, readings, strict=True):
-        mean, error = model.predicted(points[:, :-1])
+        mean, error = model.prediction(points[:, :-1])
         variance = reading.sd**2 + error**2 + (delta * mean) ** 2
         log_density -= 0.5 * ((reading.value - mean) ** 2 / variance + np.log(variance))
     return log_density
@@ -245,7 +245,7 @@ def posterior(
     flat = generator.uniform(0.0, 1.0, (KEPT, size))
     levels = (0.025, 0.5, 0.975)
 
-    def predicted(points: Array) -> Array:
+    def mean_quantiles(points: Array) -> Array:
         return np.array([np.quantile(model.mean(points), levels) for model in models])
 
     def in_si(points: Array) -> Array:
@@ -267,8 +267,8 @@ def posterior(
             (state.label, reading.value, reading.sd, reading.unit)
             for reading, state in zip(plan.readings, plan.states, strict=True)
         ],
-        predicted(flat),
-        predicted(kept[:, :size]),
+        mean_quantiles(flat),
+        mean_quantiles(kept[:, :size]),
         lengths,
         models,
         [

@@ -101,7 +101,7 @@ def _least_known(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
     candidates = qmc.Sobol(len(plan.dimensions), rng=plan.method.seed + 1).random(1024)
     chosen = []
     for _ in range(count):
-        point = candidates[int(np.argmax(surrogate.predicted(candidates, noise=False)[1]))]
+        point = candidates[int(np.argmax(surrogate.prediction(candidates, noise=False)[1]))]
         surrogate = surrogate.with_point(point)
         chosen.append(tuple(map(float, point)))
     return chosen
@@ -127,7 +127,8 @@ def _promising(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
     places, known = np.vstack([run, candidates]), len(run)
     normal = generator.standard_normal((len(goals) + len(bounds), SAMPLES, len(places)))
     drawn = [
-        surrogate.drawn(places, z) for surrogate, z in zip([*goals, *bounds], normal, strict=True)
+        surrogate.joint_draws(places, z)
+        for surrogate, z in zip([*goals, *bounds], normal, strict=True)
     ]
     values = np.stack(drawn[: len(goals)], axis=-1) * signs
     met = np.ones(values.shape[:2], dtype=bool)

@@ -122,7 +122,7 @@ class Record:
         value = self.numbers.get(name)
         return float("nan") if value is None else value
 
-    def sourced(self, name: str) -> SourcedValue:
+    def sourced_value(self, name: str) -> SourcedValue:
         """Return a number with its standard deviation."""
         return SourcedValue(
             self.numbers.get(name),

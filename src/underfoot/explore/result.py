@@ -20,6 +20,7 @@ import numpy as np
 from underfoot.case import unit_at
 from underfoot.core import DataError
 from underfoot.core.arrays import Array, Mask
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.presentation import Presentable, Table, quantity_text
 from underfoot.core.remark import NOTHING, Message, join_lines
 from underfoot.friction.propagation import probability_higher
@@ -251,7 +252,9 @@ class StudyResult(Presentable):
     def _fitted(self) -> dict[AnyGoal, Surrogate]:
         return {}
 
-    def believed(self, designs: Sequence[Design], goals: Sequence[AnyGoal]) -> tuple[Array, Array]:
+    def goal_estimates(
+        self, designs: Sequence[Design], goals: Sequence[AnyGoal]
+    ) -> tuple[Array, Array]:
         """Return mean and standard deviation (designs, goals) of what runs scatter about, SI.
 
         By the surrogate of all runs, on the finest grid; nan where a design has no numbers. An
@@ -269,10 +272,12 @@ class StudyResult(Presentable):
                 deviations[:, k] = 0.0
                 continue
             with suppress(DataError):
-                mean, deviation = self._surrogate(goal).predicted(points, noise=False)
+                mean, deviation = self._surrogate(goal).prediction(points, noise=False)
                 known = np.isfinite(means[:, k])
                 means[known, k], deviations[known, k] = mean[known], deviation[known]
         return means, deviations
+
+    believed = renamed_member("believed", "goal_estimates", gone="0.4")
 
     def margins(self, designs: Sequence[Design]) -> Array:
         """Return (designs, requirements): by how much each is met, SI; negative where not.
@@ -280,24 +285,28 @@ class StudyResult(Presentable):
         As run or as believed, whichever is less.
         """
         goals = [each.goal for each in self.plan.require]
-        both = zip(self.values(designs, goals).T, self.believed(designs, goals)[0].T, strict=True)
+        both = zip(
+            self.values(designs, goals).T, self.goal_estimates(designs, goals)[0].T, strict=True
+        )
         columns = [
             np.minimum(each.margin(run), each.margin(believed))
             for each, (run, believed) in zip(self.plan.require, both, strict=True)
         ]
         return np.array(columns, dtype=float).reshape(len(goals), len(designs)).T
 
-    def allowed(self, designs: Sequence[Design]) -> Mask:
+    def meets_requirements(self, designs: Sequence[Design]) -> Mask:
         """Return which designs have numbers and meet every requirement."""
         usable = np.array([design.usable for design in designs], dtype=bool)
         return usable & (self.margins(designs) >= 0).all(axis=1)
+
+    allowed = renamed_member("allowed", "meets_requirements", gone="0.4")
 
     def front_of(self, designs: Sequence[Design]) -> list[Design]:
         """Return the designs that no other beats in every goal, best in the first goal first."""
         if not self.plan.goals:
             return []
-        values = self.believed(designs, self.plan.goals)[0] * self.plan.signs
-        return [designs[k] for k in front_places(values, self.allowed(designs))]
+        values = self.goal_estimates(designs, self.plan.goals)[0] * self.plan.signs
+        return [designs[k] for k in front_places(values, self.meets_requirements(designs))]
 
     @cached_property
     def front(self) -> list[Design]:
@@ -311,8 +320,8 @@ class StudyResult(Presentable):
         """
         runs = self.again or self.designs
         if len(self.plan.goals) == 1:
-            good = [run for run, ok in zip(runs, self.allowed(runs), strict=True) if ok]
-            values = self.believed(good, self.plan.goals)[0][:, 0] * self.plan.signs[0]
+            good = [run for run, ok in zip(runs, self.meets_requirements(runs), strict=True) if ok]
+            values = self.goal_estimates(good, self.plan.goals)[0][:, 0] * self.plan.signs[0]
             return [good[k] for k in np.argsort(values, kind="stable")[:count]]
         front = self.front_of(runs)
         places = np.linspace(0, len(front) - 1, min(count, len(front))).round()
@@ -349,7 +358,7 @@ class StudyResult(Presentable):
         if self.start is None:
             return NOTHING
         chances = {}
-        for design, ok in zip(self.again, self.allowed(self.again), strict=True):
+        for design, ok in zip(self.again, self.meets_requirements(self.again), strict=True):
             each = [
                 self.higher_cof(design, self.start, [state]) for state in design.states * bool(ok)
             ]
@@ -534,7 +543,7 @@ class StudyResult(Presentable):
         ]
         rows = []
         units = [goal.unit for goal in goals]
-        for design, *values in zip(designs, *self.believed(designs, goals), strict=True):
+        for design, *values in zip(designs, *self.goal_estimates(designs, goals), strict=True):
             inputs = [value_text(path, design.changes.get(path)) for path in paths]
             texts = (
                 map(_goal_text, *values, units) if design.usable else [design.ending] * len(goals)
@@ -559,7 +568,7 @@ class StudyResult(Presentable):
         """
         runs = [design for design in self.all_designs if design.point]
         values, margins = self.goal_values(runs), self.margins(runs)
-        believed, deviations = self.believed(runs, self.plan.goals)
+        believed, deviations = self.goal_estimates(runs, self.plan.goals)
         front = {(design.number, design.again) for design in self.front}
         return {
             "endings": dict(self.endings),
@@ -625,7 +634,7 @@ class StudyResult(Presentable):
         return table.assign(ending=table["ending"].astype(str)).assign_attrs(title=plan.name)
 
     def _goals_text(self, design: Design) -> list[Message]:
-        means, deviations = self.believed([design], self.plan.goals)
+        means, deviations = self.goal_estimates([design], self.plan.goals)
         return [
             Message(
                 "{phrase} {value}",

@@ -92,7 +92,7 @@ class Store:
         self._touched: dict[Path, tuple[float, float]] = {}
 
     @classmethod
-    def made(cls, folder: Path | str) -> Store:
+    def open_folder(cls, folder: Path | str) -> Store:
         """Return the store in a folder: a new one, or one that a study began.
 
         Raises:

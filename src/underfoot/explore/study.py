@@ -86,7 +86,7 @@ class Study:
             Stopped: ``underfoot study stop``, or the app.
             DataError: A full disk; what is finished is on it.
         """
-        self.store = Store.made(self.store.folder)
+        self.store = Store.open_folder(self.store.folder)
         with self.store.leading() as leads:
             if not leads:
                 raise InputError(
@@ -112,7 +112,7 @@ class Study:
         Any number of processes on any number of machines may do so, with or without one that
         leads: whoever finds nothing open leads for a moment and sets what comes next.
         """
-        self.store = Store.made(self.store.folder)
+        self.store = Store.open_folder(self.store.folder)
         with self.store.leading() as leads:
             if leads:
                 self.store.adopt(self.plan)
@@ -127,7 +127,7 @@ class Study:
 
         Where another process leads the study none is computed: those that it finished tell enough.
         """
-        self.store = Store.made(self.store.folder)
+        self.store = Store.open_folder(self.store.folder)
         jobs = list(spread_jobs(self.plan, count))
         with self.store.leading() as leads, self.store.working(1):
             if leads:

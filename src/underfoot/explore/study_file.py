@@ -97,7 +97,7 @@ def read_plan(
     known = case.catalogue
     if fixed := reader.table("set"):
         case = reader.attempt("", case.replace, fixed) or case
-    vary, follow, fixed = reader.varied(known)
+    vary, follow, fixed = reader.read_varied(known)
     uncertain, joint = reader.uncertain(known, folder)
     calibrates = "reading" in reader.plain
     states, readings = reader.readings(known) if calibrates else (reader.conditions(known), ())
@@ -365,7 +365,7 @@ class _Reader:
                 return case
         raise CaseError(self.errors)
 
-    def varied(
+    def read_varied(
         self, known: Catalogue
     ) -> tuple[tuple[Input, ...], tuple[Follow, ...], dict[str, Any]]:
         """Return what the designer chooses, what follows it, and what all designs share."""
@@ -430,15 +430,15 @@ class _Reader:
         for key in table:
             self.check_known(f"outputs.{key}", "key", key, names)
 
-        def read(name: str, function: Callable[..., Any], *more: Any) -> tuple[Any, ...]:
+        def read_goals(name: str, function: Callable[..., Any], *more: Any) -> tuple[Any, ...]:
             goals = [
                 self.attempt(f"outputs.{name}[{k}]", function, text, UNITS, states, *more)
                 for k, text in enumerate(_as_list(table.get(name, [])))
             ]
             return tuple(filter(None, goals))
 
-        require = read("require", read_requirement)  # first: wear_life may rest on one
-        maximise, minimise = (read(name, read_goal, require) for name in names[:2])
+        require = read_goals("require", read_requirement)  # first: wear_life may rest on one
+        maximise, minimise = (read_goals(name, read_goal, require) for name in names[:2])
         self.attempt("outputs.require", check_agreement, require)
         for goal in set(maximise) & set(minimise):
             self.refuse_if(

@@ -43,6 +43,7 @@ from scipy.spatial.distance import cdist
 from underfoot.case import unit_at
 from underfoot.core import DataError, RangeError, display
 from underfoot.core.arrays import AnyArray, Array, Mask
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.presentation import quantity_text
 from underfoot.core.remark import Message
 from underfoot.core.threads import threads_limited
@@ -162,14 +163,14 @@ class Model:
         """Return the mean (n,), SI."""
         return self._in_si(self._covariance(features, self.features) @ self.weights)
 
-    def predicted(self, features: Array, *, noise: bool = True) -> tuple[Array, Array]:
+    def prediction(self, features: Array, *, noise: bool = True) -> tuple[Array, Array]:
         """Return mean and standard deviation (n,), SI, of a run, or without its ``noise``."""
         mean, variance = self._conditional(features, alone=True)
         middle = self._in_si(mean)
         deviation = self.scale * np.sqrt(np.maximum(variance, 0.0) + noise * self.noise)
         return middle, middle * deviation if self.logarithm else deviation
 
-    def drawn(self, features: Array, normal: Array) -> Array:
+    def joint_draws(self, features: Array, normal: Array) -> Array:
         """Return joint draws (draws, n) without noise, SI, of standard normal ones (draws, n)."""
         mean, covariance = self._conditional(features, alone=False)
         values, vectors = np.linalg.eigh(covariance)
@@ -223,7 +224,7 @@ def _most_probable(
     apart = 5 * (features.T[:, :, None] - features.T[:, None, :]) ** 2
     centre, width = prior.T
 
-    def lost(theta: Array) -> tuple[float, Array]:
+    def negative_log_density(theta: Array) -> tuple[float, Array]:
         """Return -ln p and its gradient."""
         first, second, third = _amplitudes(form, theta)
         scaled = apart * np.exp(-2 * theta[4:, None, None])
@@ -247,7 +248,10 @@ def _most_probable(
         return float(value), z / width - np.array(gradient)
 
     bounds = np.column_stack([centre - WIDEST * width, centre + WIDEST * width])
-    ends = [minimize(lost, start, jac=True, method="L-BFGS-B", bounds=bounds) for start in starts]
+    ends = [
+        minimize(negative_log_density, start, jac=True, method="L-BFGS-B", bounds=bounds)
+        for start in starts
+    ]
     return min(ends, key=lambda end: end.fun).x
 
 
@@ -314,7 +318,7 @@ class Surrogate:
             return told
         return Message("{told}: too much to rank designs by", told=told)
 
-    def predicted(self, points: Array, *, noise: bool = True) -> tuple[Array, Array]:
+    def prediction(self, points: Array, *, noise: bool = True) -> tuple[Array, Array]:
         """Return mean and standard deviation (n,) at places (n, inputs) of the unit cube, SI.
 
         95 % of fresh runs lie within 1.96 of these deviations; without ``noise`` they are those of
@@ -323,19 +327,23 @@ class Surrogate:
         Raises:
             RangeError: A place outside the cube: there the surrogate knows nothing.
         """
-        mean, deviation = self.model.predicted(self._features(points), noise=noise)
+        mean, deviation = self.model.prediction(self._features(points), noise=noise)
         return mean, self.stretch * deviation
 
+    predicted = renamed_member("predicted", "prediction", gone="0.4")
+
     def mean(self, points: Array) -> Array:
-        """Return the mean (n,) alone, which costs less; otherwise as ``predicted``."""
+        """Return the mean (n,) alone, which costs less; otherwise as ``prediction``."""
         return self.model.mean(self._features(points))
 
-    def drawn(self, points: Array, normal: Array) -> Array:
+    def joint_draws(self, points: Array, normal: Array) -> Array:
         """Return joint draws (draws, n) of what runs at places scatter about, SI.
 
         Made of standard normal draws (draws, n).
         """
-        return self.model.drawn(self._features(points), self.stretch * normal)
+        return self.model.joint_draws(self._features(points), self.stretch * normal)
+
+    drawn = renamed_member("drawn", "joint_draws", gone="0.4")
 
     def means_without(self, points: Array) -> list[Array]:
         """Return the mean (n,) of the surrogate without each part of the runs."""
@@ -468,7 +476,7 @@ def _left_out(made: Model, runs: Runs) -> tuple[Array, Array, list[Model]]:
         for part in np.array_split(order, FOLDS):
             out = np.isin(place.ravel(), part)
             model = Model(made.form, made.features[~out], runs[~out], made.theta)
-            mean, deviation = model.predicted(made.features[out])
+            mean, deviation = model.prediction(made.features[out])
             missed.append(runs.values[out] - mean)
             deviations.append(deviation)
             models.append(model)

@@ -232,7 +232,7 @@ class FaceOperator:
         )
         return FaceMatrix.of_flow(faces, ahead, behind, self.storage * fraction)
 
-    def carried(self, fraction: Array) -> Array:
+    def wall_transport(self, fraction: Array) -> Array:
         """Return what the walls carry through the x faces, m^3/s."""
         return self.carry.value * self._upstream(fraction)
 
@@ -244,7 +244,7 @@ class FaceOperator:
         faces = self.faces
         flow = np.concatenate(
             [
-                self.carried(fraction)
+                self.wall_transport(fraction)
                 - self.kx.value * (pressure[faces.east] - pressure[faces.west]),
                 self.ky.value * (pressure[faces.south] - pressure[faces.north]),
             ]
@@ -283,18 +283,18 @@ def face_operator(
     """
     west, east, lean = faces.west, faces.east, faces.lean
 
-    def clipped(values: Array) -> Array:
+    def clip_values(values: Array) -> Array:
         return np.clip(values, *limits)
 
     def nodes(values: Array) -> Array:  # (2, m): the node as seen from the west, from the east
         return (1 - lean) * values[west] + lean * values[east] + faces.rise
 
-    bounded, node = clipped(gap), clipped(nodes(gap))
+    bounded, node = clip_values(gap), clip_values(nodes(gap))
     if before is None:
         centre, middle = conductance(bounded, None), conductance(node, None)
     else:
-        centre = conductance(bounded, clipped(before))
-        middle = conductance(node, clipped(nodes(before)))
+        centre = conductance(bounded, clip_values(before))
+        middle = conductance(node, clip_values(nodes(before)))
     # west piece: from the west's centre to the node; east piece: from the node to the east's centre
     slope = centre.slope
     ends = (

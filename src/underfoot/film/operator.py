@@ -105,11 +105,11 @@ class FilmOperator:
 
     def flows(self, pressure: Array, fraction: Array) -> tuple[Array, Array]:
         """Return the flow (m^3/s) through the x and the y faces."""
-        flow_x = self.carried(fraction)
+        flow_x = self.wall_transport(fraction)
         flow_x -= self.kx.value * (pressure[1:] - pressure[:-1])
         return flow_x, self.ky.value * (pressure[:, :-1] - pressure[:, 1:])
 
-    def carried(self, fraction: Array) -> Array:
+    def wall_transport(self, fraction: Array) -> Array:
         """Return what the walls carry through the x faces, m^3/s."""
         return self.carry.value * self._upstream(fraction)
 

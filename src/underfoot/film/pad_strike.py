@@ -83,14 +83,14 @@ def touch_time(strike: Strike, contact_pressure: Callable[[ArrayLike], Any]) -> 
             force += strike.density * along**2 * loss * area
         return [-speed, (strike.load - force) / strike.mass]
 
-    def touched(_: float, state: Any) -> float:
+    def touch_excess(_: float, state: Any) -> float:
         return float(contact(max(state[0], THINNEST))) - 0.5 * strike.load
 
-    vars(touched)["terminal"] = True  # SciPy ends the solution where this event is met
+    vars(touch_excess)["terminal"] = True  # SciPy ends the solution where this event is met
     start = [strike.pool, strike.speed]
     from scipy.integrate import solve_ivp  # heavy: it brings the optimisers along
 
     solved = solve_ivp(
-        rate, (0.0, LONGEST), start, "LSODA", events=touched, rtol=1e-6, atol=[1e-9, 1e-7]
+        rate, (0.0, LONGEST), start, "LSODA", events=touch_excess, rtol=1e-6, atol=[1e-9, 1e-7]
     )
     return float(solved.t_events[0][0]) if solved.t_events[0].size else float(np.inf)

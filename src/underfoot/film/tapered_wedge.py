@@ -58,7 +58,7 @@ def tapered_wedge(
     unit = 6 * positive(viscosity, "viscosity") * positive(speed, "speed")
     unit *= along / h0**2
     modes = _modes(m)
-    half, held = modes.held(along / across)
+    half, held = modes.side_modes(along / across)
     middle = 1 - 1 / np.cosh(np.minimum(half, 700.0))
     place = np.linspace(0.0, 1.0, 2001)
     profile = (modes.weights * middle) @ modes.at(place)
@@ -87,7 +87,7 @@ def side_leakage(length_over_width: float, taper: float) -> float:
     """
     ratio = positive(length_over_width, "length_over_width")
     modes = _modes(positive(taper, "taper"))
-    return float((modes.shares * modes.held(ratio)[1]).sum() / modes.shares.sum())
+    return float((modes.shares * modes.side_modes(ratio)[1]).sum() / modes.shares.sum())
 
 
 def wedge_film(
@@ -135,7 +135,7 @@ class _Modes:
     moments: Array  # integral of x times each mode
     coefficients: Array  # (modes, modes) by sine
 
-    def held(self, slenderness: float) -> tuple[Array, Array]:
+    def side_modes(self, slenderness: float) -> tuple[Array, Array]:
         """Return half the sides' distance by modes, and the share of each that the sides leave."""
         half = 0.5 * self.rates / slenderness
         return half, 1 - np.tanh(half) / half

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from underfoot.core import InputError, SourcedValue, ValidityRange
 from underfoot.core.arrays import Array
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.remark import Message
 
 from .law import PIN_RANGES, UncertainInputs, coefficient
@@ -39,7 +40,7 @@ class BoundaryLaw(UncertainInputs):
     name: str = field(default="boundary", init=False)
 
     @classmethod
-    def measured(
+    def from_measured(
         cls,
         friction: BoundaryFriction | None,
         *,
@@ -78,6 +79,8 @@ class BoundaryLaw(UncertainInputs):
         if friction.pair:
             notes.append(f"Boundary friction was measured on {friction.pair}.")
         return cls(friction.cof_boundary, cof_hysteresis, friction.viscosity, tuple(notes))
+
+    measured = classmethod(renamed_member("measured", "from_measured", gone="0.4"))
 
     @property
     def source(self) -> str:

@@ -103,7 +103,7 @@ def cof(
         plain = SourcedValue(number, "1", source=source, reason=NO_SPREAD)
         if sampled is None:
             return plain
-        return replace(sampled.sourced(name, plain), note=HELD if name == "cof" else "")
+        return replace(sampled.sourced_value(name, plain), note=HELD if name == "cof" else "")
 
     return FrictionCoefficients(
         cof=value("cof", total),

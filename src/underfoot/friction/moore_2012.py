@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import InputError, SourcedValue, ValidityRange
 from underfoot.core.arrays import Array, scalar_or_array
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.remark import Message
 
 from .law import PIN_RANGES, REPORT, UncertainInputs, coefficient
@@ -84,7 +85,7 @@ class StribeckLaw(UncertainInputs):
             raise InputError("0 m/s", where="tau_hydro", allowed="above 0")
 
     @classmethod
-    def measured(
+    def from_measured(
         cls,
         friction: BoundaryFriction,
         *,
@@ -129,6 +130,8 @@ class StribeckLaw(UncertainInputs):
             cof_hysteresis,
             tuple(notes),
         )
+
+    measured = classmethod(renamed_member("measured", "from_measured", gone="0.4"))
 
     @property
     def assumptions(self) -> tuple[Message, ...]:

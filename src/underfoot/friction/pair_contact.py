@@ -44,6 +44,7 @@ from scipy.special import erf, ndtri
 from underfoot.core import DataError, InputError, SourcedValue, ValidityRange
 from underfoot.core.arrays import Array
 from underfoot.core.checks import positive
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.remark import Message, Remark
 
 from .law import FILM_RANGE, PIN_PRESSURE, UncertainInputs
@@ -377,7 +378,7 @@ class Pair:
     def _rq(self) -> tuple[tuple[float, float], tuple[float, float]]:
         return self.sole_rq, self.floor_rq
 
-    def drawn(self, draws: PairDraws, seed: int) -> dict[str, Array]:
+    def draw_inputs(self, draws: PairDraws, seed: int) -> dict[str, Array]:
         """Return draws (draws,) of the inputs of ``PairContactLaw``, by name."""
         apart = ndtri(named_shares(seed, f"hardness {self.polymer}", draws.count))
         numbers: dict[str, ArrayLike] = {"shore_a": self.shore_a + self.shore_a_deviation * apart}
@@ -402,6 +403,8 @@ class Pair:
             "laboratory": np.exp(draws.error(LABORATORY, draws.sd_laboratory, seed)),
             "pair": np.exp(draws.error(self.compound_and_floor, draws.sd_pair, seed)),
         }
+
+    drawn = renamed_member("drawn", "draw_inputs", gone="0.4")
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -443,7 +446,7 @@ class PairContactLaw(UncertainInputs):
             if not 0 < low <= high:
                 raise InputError(f"{low:g} to {high:g} m", where="pair", allowed="Rq above 0")
         if not self.medians:
-            drawn = self.pair.drawn(self.draws, 0)
+            drawn = self.pair.draw_inputs(self.draws, 0)
             medians = {name: float(np.median(values)) for name, values in drawn.items()}
             # the median of many draws of a symmetric error is 1
             for name, error in (("laboratory", LABORATORY), ("pair", self.pair.compound_and_floor)):
@@ -527,7 +530,7 @@ class PairContactLaw(UncertainInputs):
     @property
     def inputs(self) -> dict[str, SourcedValue]:
         """Medians with the standard deviations of the draws, which are joint."""
-        drawn = self.pair.drawn(self.draws, 0)
+        drawn = self.pair.draw_inputs(self.draws, 0)
         return {
             name: SourcedValue(value, UNITS.get(name, "1"), self.source, float(drawn[name].std()))
             for name, value in self.medians.items()
@@ -536,7 +539,7 @@ class PairContactLaw(UncertainInputs):
     def joint_draws(self, samples: int, seed: int) -> dict[str, Array]:
         """Return (samples,) joint draws of the inputs; cases with one seed share what they can."""
         rows = np.arange(samples) % self.draws.count
-        return self.pair.drawn(self.draws.rows(rows), seed)
+        return self.pair.draw_inputs(self.draws.rows(rows), seed)
 
     def known_errors(self, samples: int) -> Mapping[str, Array]:
         """Return (samples,) errors that readings determined, by name, in the rows of the draws."""

@@ -110,7 +110,7 @@ class SampledCof:
     contact: Array
     law: LawDraws
 
-    def sourced(self, name: str, value: SourcedValue) -> SourcedValue:
+    def sourced_value(self, name: str, value: SourcedValue) -> SourcedValue:
         """Return ``value`` with the standard deviation and the interval of the draws ``name``."""
         draws = getattr(self, name)
         if np.std(draws) <= 1e-9 * np.abs(draws).max(initial=0.0):

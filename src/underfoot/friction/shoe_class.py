@@ -239,7 +239,7 @@ def _ln_cof(
     pair = replace(law.pair, floor_rq=test.floor_rq, family=test.family, floor_slope=None)
     # what goes with the sole into another laboratory
     errors = {name: each for name, each in draws.errors.items() if name.startswith("sole_rq")}
-    drawn = pair.drawn(replace(draws, errors=errors), seed + 1)
+    drawn = pair.draw_inputs(replace(draws, errors=errors), seed + 1)
     terms = ContactTerms(*(drawn[name] for name in TERMS))
     cof = terms.adhesion(CONTACT_PRESSURE, test.viscosity * SPEED) + terms.hysteresis
     error = tread_error(test.viscosity)

@@ -151,9 +151,9 @@ class Elastomer:
 
 def young_from_shear(shear: RelaxationSpectrum, poisson_ratio: float = 0.499) -> RelaxationSpectrum:
     """Return the spectrum of E from that of G: every modulus times 2 (1 + nu)."""
-    return shear.scaled(youngs_modulus_from_shear(1.0, poisson_ratio))
+    return shear.scale_moduli(youngs_modulus_from_shear(1.0, poisson_ratio))
 
 
 def shear_from_young(young: RelaxationSpectrum, poisson_ratio: float = 0.499) -> RelaxationSpectrum:
     """Return the spectrum of G from that of E: every modulus over 2 (1 + nu)."""
-    return young.scaled(shear_modulus(1.0, poisson_ratio))
+    return young.scale_moduli(shear_modulus(1.0, poisson_ratio))

@@ -173,14 +173,14 @@ def fit_wlf(
     away = t - reference_temperature
     lowest = max(-float(away.min()), 0.0)
 
-    def solved(log_margin: float) -> tuple[float, float, float]:
+    def fit_margin(log_margin: float) -> tuple[float, float, float]:
         c2 = lowest + float(np.exp(log_margin))
         shape = -away / (c2 + away)
         c1 = float(shape @ shifts / (shape @ shape))
         return float(np.sum((c1 * shape - shifts) ** 2)), c1, c2
 
     grid = np.linspace(np.log(1.0), np.log(3000.0), 200)
-    cost, c1, c2 = solved(minimum_on(grid, lambda g: solved(g)[0], 1e-10))
+    cost, c1, c2 = fit_margin(minimum_on(grid, lambda g: fit_margin(g)[0], 1e-10))
     tested = (float(t.min()), float(t.max()))
     return WlfShift(c1, c2, float(reference_temperature), float(np.sqrt(cost / t.size)), tested)
 

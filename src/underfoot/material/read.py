@@ -133,22 +133,25 @@ def read_relaxation(
 
 
 def _is_sweep(table: FileTable) -> bool:
-    return table.named("angular frequency", "frequency") is not None and any(
-        table.named(name) is not None
+    return table.find_column("angular frequency", "frequency") is not None and any(
+        table.find_column(name) is not None
         for name in ("storage modulus", "loss modulus", "modulus magnitude", "complex viscosity",
                      "storage compliance", "loss factor")
     )  # fmt: skip
 
 
 def _is_series(table: FileTable) -> bool:
-    timed = table.named("relaxation time", "decay rate") is not None
-    if table.named("fraction", "term") is not None:
-        return timed or table.named("time") is not None
+    timed = table.find_column("relaxation time", "decay rate") is not None
+    if table.find_column("fraction", "term") is not None:
+        return timed or table.find_column("time") is not None
     return timed
 
 
 def _is_relaxation(table: FileTable) -> bool:
-    return table.named("time") is not None and table.named("relaxation modulus") is not None
+    return (
+        table.find_column("time") is not None
+        and table.find_column("relaxation modulus") is not None
+    )
 
 
 def _sweeps(tables: Sequence[FileTable]) -> list[DynamicSweep]:
@@ -180,7 +183,7 @@ def _refuse_strains(table: FileTable, w: np.ndarray) -> None:
 
     A filled rubber is softer the further it is strained (Payne): no spectrum fits them together.
     """
-    column, hot = table.named("strain"), table.named("temperature")
+    column, hot = table.find_column("strain"), table.find_column("temperature")
     if column is None:
         return
     try:
@@ -213,7 +216,7 @@ def _moduli(table: FileTable, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return storage and loss modulus (Pa) from whatever pair of columns gives them."""
 
     def si(name: str) -> np.ndarray | None:
-        column = table.named(name)
+        column = table.find_column(name)
         return None if column is None else table.si(column)
 
     storage, loss, tangent = (si(n) for n in ("storage modulus", "loss modulus", "loss factor"))
@@ -239,7 +242,7 @@ def _moduli(table: FileTable, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     missing = ("loss modulus", "loss factor") if storage is not None else ("storage modulus",)
     if size is not None:
         missing = ("phase angle", "loss factor")
-    table.needed(*missing)
+    table.require_column(*missing)
     raise AssertionError  # one of them would have been used
 
 
@@ -263,8 +266,8 @@ def _refuse_other_tangent(ratio: np.ndarray, tangent: np.ndarray, where: str) ->
 def _curves(tables: Sequence[FileTable]) -> list[RelaxationCurve]:
     curves = []
     for table in tables:
-        time = table.si(table.needed("time"))
-        modulus = table.si(table.needed("relaxation modulus"))
+        time = table.si(table.require_column("time"))
+        modulus = table.si(table.require_column("relaxation modulus"))
         for rows, temperature in _sets(table, time):
             t, e = time[rows], modulus[rows]
             if t.size > 1 and np.all(np.diff(t) < 0.0):
@@ -326,7 +329,7 @@ def _series(
 ) -> RelaxationSpectrum:
     """Return the series of a table, moduli as headed."""
     where, tau = table.where, _times(table)
-    fraction, term = table.named("fraction"), table.named(*_TERMS)
+    fraction, term = table.find_column("fraction"), table.find_column(*_TERMS)
     terms = fraction or term
     if terms is None:
         raise DataError(
@@ -351,7 +354,7 @@ def _series(
             remedy="Fit the series again with terms of 0 or more: a negative one stores energy",
         )
     resting = np.isinf(tau)
-    stands = {name: _constant(table, table.named(name)) for name in MODULI}
+    stands = {name: _constant(table, table.find_column(name)) for name in MODULI}
     at_once, at_rest = stands["modulus at once"], stands["modulus at rest"]
     if at_once is not None and at_rest is not None:
         at_once = None  # they say the same; the one at rest needs no sum
@@ -386,9 +389,9 @@ def _constant(table: FileTable, column: FileColumn | None) -> float | None:
 
 def _times(table: FileTable) -> np.ndarray:
     """Return relaxation times (s), infinite for the modulus at rest."""
-    column = table.named("relaxation time", "decay rate") or table.named("time")
+    column = table.find_column("relaxation time", "decay rate") or table.find_column("time")
     if column is None:
-        column = table.needed("relaxation time", "decay rate")
+        column = table.require_column("relaxation time", "decay rate")
     if column.quantity == "decay rate":
         rate = table.si(column)
         with np.errstate(divide="ignore"):
@@ -525,7 +528,7 @@ def _sets(table: FileTable, axis: np.ndarray) -> list[tuple[np.ndarray, float | 
 
     ``axis`` is what runs within a test: frequency or time.
     """
-    column, label = table.named("temperature"), table.named("set")
+    column, label = table.find_column("temperature"), table.find_column("set")
     kelvin = None if column is None else table.si(column)
     if label is not None:
         numbers = table.numbers(label)

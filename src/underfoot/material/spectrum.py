@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import InputError, display
 from underfoot.core.arrays import scalar_or_array
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.remark import Amount, Message
 
@@ -153,7 +154,7 @@ class RelaxationSpectrum(Presentable):
             result = modulus.imag / modulus.real
         return scalar_or_array(result)
 
-    def scaled(self, factor: float, *, source: str | None = None) -> Self:
+    def scale_moduli(self, factor: float, *, source: str | None = None) -> Self:
         """Return the spectrum with every modulus times ``factor`` (> 0)."""
         if not (np.isfinite(factor) and factor > 0.0):
             raise InputError(
@@ -169,7 +170,9 @@ class RelaxationSpectrum(Presentable):
             assumed=self.assumed,
         )
 
-    def shifted(self, shift_factor: float, *, source: str | None = None) -> Self:
+    scaled = renamed_member("scaled", "scale_moduli", gone="0.4")
+
+    def shift_times(self, shift_factor: float, *, source: str | None = None) -> Self:
         """Return the spectrum at another temperature: every time times ``shift_factor`` (a_T)."""
         if not (np.isfinite(shift_factor) and shift_factor > 0.0):
             raise InputError(
@@ -184,6 +187,8 @@ class RelaxationSpectrum(Presentable):
             source=self.source if source is None else source,
             assumed=self.assumed,
         )
+
+    shifted = renamed_member("shifted", "shift_times", gone="0.4")
 
     def _key(self) -> tuple[Any, ...]:
         return (

@@ -310,17 +310,17 @@ def _fit(
     def relative(tau: np.ndarray) -> np.ndarray:
         return np.vstack([kernel(axis, tau) / y[:, None] for kernel, y in measured.values()])
 
-    def solved(matrix: np.ndarray, goal: np.ndarray, smoothing: float) -> np.ndarray:
+    def solve_weights(matrix: np.ndarray, goal: np.ndarray, smoothing: float) -> np.ndarray:
         return smooth_nonnegative(matrix * weight[:, None], goal, scale, step, float(smoothing))
 
     stacked = relative(times)
     weight = np.ones(stacked.shape[0])
     for _ in range(2 if len(measured) > 1 else 0):
-        rough = solved(stacked, weight, SMOOTHINGS[0])
+        rough = solve_weights(stacked, weight, SMOOTHINGS[0])
         errors = np.split(stacked @ rough - 1.0, edges)
         spread = np.array([max(float(np.sqrt(np.mean(e**2))), 1e-4) for e in errors])
         weight = np.repeat(spread.min() / spread, axis.size)
-    solutions = [solved(stacked, weight, s) for s in SMOOTHINGS]
+    solutions = [solve_weights(stacked, weight, s) for s in SMOOTHINGS]
     matrix = stacked * weight[:, None]
     rms = np.array([np.sqrt(np.mean((matrix @ x - weight) ** 2)) for x in solutions])
     best = int(np.flatnonzero(rms <= max(SLACK * float(rms.min()), noise, 1e-6))[-1])
@@ -336,7 +336,7 @@ def _fit(
         signs = np.concatenate([random_signs(axis.size, run, generator) for run in runs])
         strength = smoothing * 10.0 ** generator.uniform(-1.5, 0.5)
         tau = times * 10.0 ** (step * generator.uniform(-0.5, 0.5))
-        samples.append(solved(relative(tau), fitted + signs * residual, strength))
+        samples.append(solve_weights(relative(tau), fitted + signs * residual, strength))
         sample_times.append(tau)
     return SpectrumFit(
         RelaxationSpectrum(solution[0], solution[1:], times, source=source),

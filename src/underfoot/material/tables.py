@@ -135,14 +135,14 @@ class FileTable:
     """Temperature that stands above the table, K."""
     rheometer: bool = False
 
-    def named(self, *quantities: str) -> FileColumn | None:
+    def find_column(self, *quantities: str) -> FileColumn | None:
         """Return the first column of one of the quantities."""
         generator = (c for q in quantities for c in self.columns if c.quantity == q)
         return next(generator, None)
 
-    def needed(self, *quantities: str) -> FileColumn:
+    def require_column(self, *quantities: str) -> FileColumn:
         """Return the first column of one of the quantities; a DataError without one."""
-        column = self.named(*quantities)
+        column = self.find_column(*quantities)
         if column is not None:
             return column
         shown = [s for s, q in SYMBOLS.items() if q in quantities]
@@ -228,7 +228,7 @@ class FileTable:
         Raises:
             DataError: Neither decides, or they contradict each other.
         """
-        column = self.needed("angular frequency", "frequency")
+        column = self.require_column("angular frequency", "frequency")
         values, where = self.numbers(column), column_place(self.where, column.name)
         angular = column.quantity == "angular frequency"
         written = self.unit(column, "frequency")

@@ -51,7 +51,7 @@ def deck_text(
             allowed="above 0, below 0.5",
         )
     pascal = to_si(f"1 {unit}", "Pa", where="unit")
-    shear = shear_from_young(series, poisson_ratio).scaled(1.0 / pascal)
+    shear = shear_from_young(series, poisson_ratio).scale_moduli(1.0 / pascal)
     at_once, rest = shear.instantaneous_modulus, shear.equilibrium_modulus
     bulk = float(bulk_modulus(series.instantaneous_modulus / pascal, poisson_ratio))
     terms = [

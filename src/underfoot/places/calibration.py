@@ -77,7 +77,7 @@ def learn_floor(
     joint: PlaceDraws, floor: str, floor_rq: tuple[float, float], reading: FloorReading
 ) -> tuple[UnexpectedReading, ...]:
     """Teach draws what a machine read on a floor; return it where it was not foretold."""
-    foretold = interval(reading.machine.read(joint, floor, floor_rq, reading.fluid))
+    foretold = interval(reading.machine.draw_readings(joint, floor, floor_rq, reading.fluid))
     log = reading.machine.log_likelihood(
         joint, floor, floor_rq, reading.fluid, reading.value, kind=reading.kind, sd=reading.sd
     )
@@ -257,7 +257,7 @@ def calibrated_floor(
     """
     device = machine(named, "--machine")
     liquid = device.fluid_of_standard(fluid, "--fluid")
-    value = device.checked(reading, "--reading")
+    value = device.check_reading(reading, "--reading")
     law, read = pair_law(case), FloorReading(device, liquid, value, kind)
     beside: tuple[FloorReading, ...] = ()
     if isinstance(case.friction, PairReadOption):
@@ -330,7 +330,7 @@ class PairReadOption(PairOption):
             if given is not None:
                 device = machine(named)
                 value = float(np.degrees(given)) if device.scale.unit == "deg" else float(given)
-                value = device.checked(value, f"{where}.{field}")
+                value = device.check_reading(value, f"{where}.{field}")
                 readings.append(FloorReading(device, device.fluid_of_standard(), value))
         for field, named in CLASSES.items():
             if (given := getattr(self, field)) is not None:

@@ -82,7 +82,7 @@ class PlaceSolver:
                 try:
                     section = dict(solved_floors[floor.name].section)
                     changes = {"floor": section, "contaminant": fluid}
-                    values = march.continued(changes, drawn=False).values
+                    values = march.continue_march(changes, drawn=False).values
                 except (InputError, ConvergenceError):
                     solved = Continuation(case, quick=self.quick)
                     values = solved.values

@@ -67,7 +67,7 @@ class Evidence:
         low, high = self.ends
         return (low + high) / 2 if 0 < low <= high < np.inf else None
 
-    def unlearned(self, machine: Machine) -> tuple[float, float]:
+    def prior_moments(self, machine: Machine) -> tuple[float, float]:
         """Return mean and variance of ln COF by a machine that has learned nothing."""
         log = np.log(self.unlearned_cof(PlaceDraws(count=DRAWS), machine))
         return float(np.median(log)), float(np.var(log))
@@ -247,7 +247,7 @@ def floor_likeness(left_out: str = "") -> float:
 
 @cache
 def _unlearned_scatter(each: Evidence) -> tuple[float, float]:
-    return each.unlearned(each.machine)
+    return each.prior_moments(each.machine)
 
 
 @dataclass(frozen=True, slots=True)
@@ -404,7 +404,7 @@ def machine_scores(seed: int = 0) -> MachineScores:
 def _score_floor(each: Evidence, seed: int) -> ScoredReading:
     device = replace(each.machine, learned=learn_machine(each.machine, each.source))
     joint = PlaceDraws(count=DRAWS, seed=seed)
-    read = device.read(joint, each.floor, each.rq, FLUIDS[device.fluids[0]])
+    read = device.draw_readings(joint, each.floor, each.rq, FLUIDS[device.fluids[0]])
     others = [
         other.middle
         for other in evidence()

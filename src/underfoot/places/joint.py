@@ -44,7 +44,7 @@ KEPT_AS = "share of "
 
 
 def floor_name(pair: Pair) -> str:
-    """Return the name under which ``Pair.drawn`` looks for the share of the floor's roughness."""
+    """Return the name of the share of the floor's roughness in ``Pair.draw_inputs``."""
     return f"floor_rq {pair.floor_rq[0]:.3g} {pair.floor_rq[1]:.3g}"
 
 
@@ -169,7 +169,7 @@ class PlaceDraws:
             floor_name(pair): self.share(f"roughness of floor {floor}"),
             pair.sole_roughness: self.share(f"roughness of sole {sole}"),
         }
-        drawn = pair.drawn(replace(base, errors=errors), self.seed)
+        drawn = pair.draw_inputs(replace(base, errors=errors), self.seed)
         terms = ContactTerms(*(drawn[name] for name in TERMS))
         cof = terms.adhesion(pressure, drag) + terms.hysteresis
         return cof * drawn["laboratory"] * drawn["pair"]

@@ -265,7 +265,7 @@ class Machine:
             )
         return fluid
 
-    def checked(self, reading: float, where: str) -> float:
+    def check_reading(self, reading: float, where: str) -> float:
         """Return a reading that the machine's scale holds.
 
         Raises:
@@ -341,7 +341,7 @@ class Machine:
             cof = np.tan(np.arctan(cof) - np.arctan(needed))
         return np.maximum(cof, SMALLEST)
 
-    def read(
+    def draw_readings(
         self, joint: PlaceDraws, floor: str, floor_rq: tuple[float, float], fluid: Fluid
     ) -> Array:
         """Return draws (count,) of what the machine prints of a floor, in its unit."""
@@ -387,9 +387,9 @@ def machine_of(entry: Entry) -> Machine:
         return low, high
 
     def number(path: str, unit: str = "1") -> float:
-        return float(entry.sourced(path, unit))
+        return float(entry.sourced_value(path, unit))
 
-    def learned() -> Learned | None:
+    def learned_factor() -> Learned | None:
         if "learned.ln_factor" not in entry.values:
             return None
         paths = ("ln_factor", "ln_factor_sd", "ln_source_sd", "ln_floor_sd")
@@ -422,7 +422,7 @@ def machine_of(entry: Entry) -> Machine:
         span("sliding.walker", "1") if "sliding.walker" in entry.values else (0.0, 0.0),
         bearing,
         number("specimen.ln_deviation") if "specimen.ln_deviation" in entry.values else 0.0,
-        learned(),
+        learned_factor(),
     )
 
 
@@ -603,7 +603,7 @@ def prediction(
         fluid: What is on the floor.
         known: What the prediction says of the floor: whether readings of it are known.
     """
-    reading = device.read(joint, floor, floor_rq, fluid)
+    reading = device.draw_readings(joint, floor, floor_rq, fluid)
     names = np.array([device.class_of(float(x)) for x in reading])
     classes = tuple((label, float(np.mean(names == label))) for _, label in device.classes)
     return MachinePrediction(device, fluid, floor_rq, known, *interval(reading), classes)

@@ -407,7 +407,7 @@ def _floor_reading(entry: Any, where: str) -> FloorReading:
     fluid = device.fluid_of_standard(str(entry.get("fluid", "")), f"{where}.fluid")
     if "value" not in entry:
         raise InputError("is missing", where=f"{where}.value", allowed="what the machine printed")
-    value = device.checked(entry["value"], f"{where}.value")
+    value = device.check_reading(entry["value"], f"{where}.value")
     kind = str(entry.get("kind", "value"))
     spread = _number(entry, "sd", where, 0.0, (1e-6, device.most)) if "sd" in entry else None
     check_kind(kind, f"{where}.kind")

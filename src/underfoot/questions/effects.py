@@ -89,7 +89,7 @@ class _Friction:
         load = float(self.fluid_load)
         return min(1.0, load / start.fluid_load) if start.fluid_load else 1.0
 
-    def spread(self, beyond: _Spread, share: float) -> _Friction:
+    def widen_draws(self, beyond: _Spread, share: float) -> _Friction:
         """Return the friction with ``share`` of a further shift and spread in its draws."""
         if self.draws is None:
             return self
@@ -97,14 +97,14 @@ class _Friction:
         further = beyond.shift + beyond.deviation * normal
         return replace(self, draws=self.draws * np.exp(share * further))
 
-    def moved(self, start: _Level, unchanged: _Level) -> _Friction:
+    def move_start(self, start: _Level, unchanged: _Level) -> _Friction:
         """Return a changed friction as from ``unchanged`` instead of ``start``."""
         cof, load = float(self.cof), float(self.fluid_load)
         left = self.film_left(start)
         more, more_load = (left * (b - a) for a, b in zip(start, unchanged, strict=True))
         factor = max(1.0 + more / cof, 0.0) if cof else 1.0
         return _Friction(
-            self.cof.scaled(factor),
+            self.cof.scale_value(factor),
             None if self.draws is None else factor * self.draws,
             replace(self.fluid_load, value=max(load + more_load, 0.0)),
         )
@@ -213,7 +213,7 @@ def change_effects(
             seen = _continue_march(march, changes[number], lugs)
             if seen is not None:
                 there = _Friction.of_march(seen)
-                there = there.moved(start, mean).spread(left_out, there.film_left(start))
+                there = there.move_start(start, mean).widen_draws(left_out, there.film_left(start))
                 effects[number] = there.effect(
                     changes[number], variant, present, seen.errors["cof"]
                 )
@@ -246,7 +246,7 @@ def change_effects(
             continue
         there = _Friction.of(outcome.scalars, outcome.maps)
         if start is not None:
-            there = there.moved(start, mean if number in alike or not lugs else level)
+            there = there.move_start(start, mean if number in alike or not lugs else level)
         effects[number] = there.effect(changes[number], each, present)
     return tuple(effects[number] for number in range(len(changes)))
 
@@ -273,7 +273,7 @@ def _march(case: Case, progress: Progress) -> Continuation | None:
 def _continue_march(march: Continuation, change: Change, lugs: bool) -> Preview | None:
     """Return a change by continuation; None where it can't be made or may be too far off."""
     try:
-        seen = march.continued(change.values)
+        seen = march.continue_march(change.values)
     except (InputError, ConvergenceError):
         return None
     spread = 0.5 * (seen.cof.uncertainty or 0.0)

@@ -440,7 +440,7 @@ def _window(entry: Entry) -> str:
     if "method.averaging_end" not in entry.values:
         return ""
     begin, end = (
-        display(float(entry.sourced(f"method.averaging_{name}", "s")), "s")
+        display(float(entry.sourced_value(f"method.averaging_{name}", "s")), "s")
         for name in ("start", "end")
     )
     after = "the force is there" if entry.text("method.averaging_from") == "force" else "contact"
@@ -458,7 +458,7 @@ def _condition(
     entry: Entry, name: str, case: Case, outcome: CaseOutcome, effects: Sensitivity | None
 ) -> MethodCondition:
     limits, titled = f"limits.{name}", f"conditions.{name}.title"
-    limit = entry.sourced(limits, "1") if limits in entry.values else None
+    limit = entry.sourced_value(limits, "1") if limits in entry.values else None
     title = entry.text(titled) if titled in entry.values else name.replace("_", " ")
     band = effects.band("cof") if effects is not None and effects.nominal.usable else None
     low = high = probability = None

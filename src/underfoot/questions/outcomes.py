@@ -16,6 +16,7 @@ from underfoot.compute.summary import ranked_assumptions
 from underfoot.core import ConvergenceError, Progress, SourcedValue, Status, content_hash, silent
 from underfoot.core.arrays import Array
 from underfoot.core.cache import Cache
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.pool import in_processes, workers
 from underfoot.core.progress import part
 from underfoot.core.remark import Remark, from_stored, stored_form
@@ -53,10 +54,12 @@ class CaseOutcome:
         value = self.scalars[name].value
         return float("nan") if value is None or not self.usable else value
 
-    def spread(self, name: str) -> float:
+    def standard_deviation(self, name: str) -> float:
         """Return a scalar's standard deviation; nan where it was not estimated."""
         deviation = self.scalars[name].uncertainty
         return float("nan") if deviation is None or not self.usable else deviation
+
+    spread = renamed_member("spread", "standard_deviation", gone="0.4")
 
     def remarks(self) -> dict[str, Sequence[str]]:
         """Return the assumptions, the decisive ones first, and the tested ranges left."""
@@ -98,7 +101,7 @@ class CaseOutcome:
         plain["status"] = Status(plain["status"])
         plain["labels"] = from_stored(plain["labels"])
         for name in ("breaches", "assumptions"):
-            plain[name] = tuple(map(Remark.stored, plain[name]))
+            plain[name] = tuple(map(Remark.from_stored, plain[name]))
         return cls(**plain)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from underfoot.case import unit_at
 from underfoot.core import Progress, display, silent
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.presentation import Presentable, Table, quantity_text
 from underfoot.core.remark import Message
 
@@ -197,7 +198,7 @@ class Sensitivity(Presentable):
             )
         ]  # fmt: skip
         if self.effects:
-            first = self.ranked("cof")[0]
+            first = self.ranked_effects("cof")[0]
             sentences.append(
                 Message(
                     "Most effective input: {path}, {inputs: to } changes the COF from "
@@ -236,7 +237,7 @@ class Sensitivity(Presentable):
         for name, label in QUANTITIES.items():
             rows = [
                 (effect.path, *effect.ends(), *effect.results(name))
-                for effect in self.ranked(name)[:MOST_INPUTS]
+                for effect in self.ranked_effects(name)[:MOST_INPUTS]
             ]
             tables.append(
                 Table(
@@ -250,7 +251,7 @@ class Sensitivity(Presentable):
     def remarks(self) -> dict[str, Sequence[str]]:
         reasons = [
             Message("{path}: {reason}", path=effect.path, reason=effect.reason)
-            for effect in self.ranked("cof")
+            for effect in self.ranked_effects("cof")
         ]
         return {"Reasons for the ranges": reasons}
 
@@ -275,7 +276,7 @@ class Sensitivity(Presentable):
                         "deviation": effect.deviation(name, self.nominal),
                         "reason": effect.reason,
                     }
-                    for effect in self.ranked(name)
+                    for effect in self.ranked_effects(name)
                 ],
             }
         return {"quantities": quantities}
@@ -294,7 +295,7 @@ class Sensitivity(Presentable):
                 *(effect.deviation(name, nominal), effect.reason),
             )
             for name in QUANTITIES
-            for effect in self.ranked(name)
+            for effect in self.ranked_effects(name)
         ]
         return {"sensitivity": Table("", heads, rows)}
 
@@ -307,14 +308,14 @@ class Sensitivity(Presentable):
         inputs = math.sqrt(
             sum(deviation**2 for deviation in deviations if not math.isnan(deviation))
         )
-        law = self.nominal.spread(name)
+        law = self.nominal.standard_deviation(name)
         law = 0.0 if math.isnan(law) else law
         pairs = zip(self.effects, deviations, strict=True)
         failed = tuple(effect.path for effect, each in pairs if math.isnan(each))
         both = math.hypot(inputs, law)
         return Band(value, both, inputs, law, min(values), max(values), failed)
 
-    def ranked(self, name: str) -> list[InputEffect]:
+    def ranked_effects(self, name: str) -> list[InputEffect]:
         """Return the effects on a number, largest first."""
 
         def size(effect: InputEffect) -> float:
@@ -322,6 +323,8 @@ class Sensitivity(Presentable):
             return 0.0 if math.isnan(deviation) else -deviation
 
         return sorted(self.effects, key=size)
+
+    ranked = renamed_member("ranked", "ranked_effects", gone="0.4")
 
 
 def open_inputs(case: Case, inputs: Sequence[OpenInput] = OPEN_INPUTS) -> list[OpenInput]:
@@ -335,11 +338,11 @@ def open_inputs(case: Case, inputs: Sequence[OpenInput] = OPEN_INPUTS) -> list[O
             continue
         if each.path == "contaminant.pool_depth" and case.motion.end_time is None:
             continue  # steady sliding has forgotten it
-        if each.only_assumed and not case.sourced(each.path).assumed:
+        if each.only_assumed and not case.sourced_value(each.path).assumed:
             continue
         if each.path == "shoe.material.shore_a" and case.shoe.material.modulus is not None:
             continue
-        if uncertainty := case.sourced(each.path).uncertainty:
+        if uncertainty := case.sourced_value(each.path).uncertainty:
             each = replace(
                 each, deviation=uncertainty, reason="its stated uncertainty", ratio=False
             )

@@ -86,7 +86,7 @@ def of_conditions(
         draws = []
         for march in marches:
             try:
-                draws.append(march.continued(changes).cof_draws)
+                draws.append(march.continue_march(changes).cof_draws)
             except (ConvergenceError, InputError):
                 break
         if len(draws) == 2 and draws[0] is not None and draws[1] is not None:

@@ -100,7 +100,9 @@ class SlipPopulation(Presentable):
                 ),
                 Message("One walker has no spread, so no interval."),
             )  # fmt: skip
-        shares = zip(("share", "low", "high"), map(probability_text, study.slipped()), strict=True)
+        shares = zip(
+            ("share", "low", "high"), map(probability_text, study.slip_share()), strict=True
+        )
         middle, spread = NOTHING, Message("walkers")
         if study.by_friction is not None:
             middle = Message(", at the middle of the friction")

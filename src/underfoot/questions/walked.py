@@ -80,7 +80,7 @@ class WearWalker:
     wear_rate: float
     pair: WornPair | None = None
 
-    def walked(self, volume: float, volumes: Sequence[float], lost: Sequence[float]) -> Walked:
+    def walk_until(self, volume: float, volumes: Sequence[float], lost: Sequence[float]) -> Walked:
         """Return the walk until ``volume`` (m^3) is lost.
 
         Without a pair L = 2 l V / (k F s), two steps l to each landing of one shoe. With one,

@@ -12,6 +12,7 @@ import numpy as np
 from underfoot.case.wear import USUAL_WEAR_RATE
 from underfoot.compute.sole import bottom_surface
 from underfoot.core import InputError, Progress, display, silent, to_si, unknown_name
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.fields import Fields, labelled_fields
 from underfoot.core.presentation import Presentable, Table, percent
 from underfoot.core.progress import part
@@ -128,10 +129,10 @@ class WearSeries(Presentable):
         sentences = [self._crossing(name) for name in LOADS]
         if (cof := self._cof()) is not None:
             sentences.append(cof)
-        if walks := self.walked():
+        if walks := self.walks():
             measured = self.walker is not None and self.walker.pair is not None
             life = Message("life not estimated without a worn pair (--worn-pair)")
-            volume = _size(float(self.measured("removed_volume")[-1]), "m^3")
+            volume = _size(float(self.wear_measures("removed_volume")[-1]), "m^3")
             sentences.append(
                 Message(
                     "The last state has lost {volume}: {life}.",
@@ -188,14 +189,16 @@ class WearSeries(Presentable):
         chance = percent(float(np.mean(worn > new)))
         return Message(" (higher with a probability of {chance})", chance=chance)
 
-    def walked(self) -> list[Walked]:
+    def walks(self) -> list[Walked]:
         """Return how far one walks to each state; empty without a walker."""
         if self.walker is None:
             return []
         volumes, lost = (
-            self.measured(name).tolist() for name in ("removed_volume", "removed_depth")
+            self.wear_measures(name).tolist() for name in ("removed_volume", "removed_depth")
         )
-        return [self.walker.walked(volume, volumes, lost) for volume in volumes]
+        return [self.walker.walk_until(volume, volumes, lost) for volume in volumes]
+
+    walked = renamed_member("walked", "walks", gone="0.4")
 
     def cautions(self) -> tuple[Message, ...]:
         reasons: list[Message] = []
@@ -240,7 +243,7 @@ class WearSeries(Presentable):
             else Message("{label} ({unit})", label=label, unit=_unit_name(unit))
             for _, unit, label in (*measures, *numbers)
         )
-        walks = self.walked()
+        walks = self.walks()
         if walks and self.walker and self.walker.pair:
             distances = [*(walk.text for walk in walks), *[""] * (len(rows) - len(walks))]
             heads = (*heads, "Walked")
@@ -306,16 +309,18 @@ class WearSeries(Presentable):
     def _walks(self) -> list[dict[str, float]]:
         """Return the distance (m) and months to each state by name; nothing without a walker."""
         names = ("walked_low_m", "walked_high_m", "months_low", "months_high")
-        ends = [(*walk.distance, *walk.months) for walk in self.walked()]
+        ends = [(*walk.distance, *walk.months) for walk in self.walks()]
         return [dict(zip(names, end, strict=True)) for end in ends] or [{} for _ in self.points]
 
     def values(self, name: str) -> np.ndarray:
         """Return a number of all points in SI, nan where it was not determined."""
         return np.array([point.outcome.number(name) for point in self.points])
 
-    def measured(self, name: str) -> np.ndarray:
+    def wear_measures(self, name: str) -> np.ndarray:
         """Return a measure of wear of all points in SI."""
         return np.array([getattr(point.measures, name) for point in self.points])
+
+    measured = renamed_member("measured", "wear_measures", gone="0.4")
 
     def ends(self, name: str) -> tuple[np.ndarray, np.ndarray]:
         """Return the lowest and highest value of a number over the open inputs, per point."""
@@ -351,7 +356,7 @@ class WearSeries(Presentable):
         return labelled_fields(
             variables,
             {
-                "state": ("state", self.measured("removed_depth"), lost),
+                "state": ("state", self.wear_measures("removed_depth"), lost),
                 "x": ("x", first.x, {"units": "m", "long_name": "from the rear end"}),
                 "y": ("y", first.y, {"units": "m", "long_name": "across"}),
             },
@@ -623,7 +628,7 @@ def trends(series: WearSeries) -> list[Trend]:
 
     Those of worn regions are ranked over the states that have one, and the last one without.
     """
-    patch = series.measured("worn_patch_area")
+    patch = series.wear_measures("worn_patch_area")
     worn_region = slice(max(int(np.count_nonzero(patch == 0)) - 1, 0), None)
     patch, peak, friction = (
         values[worn_region]

@@ -95,7 +95,7 @@ def measures_between(
         share = place - before
         blend = (1 - share) * removed[before] + share * removed[before + 1]
         worn = WornMap(maps[0].x, maps[0].y, blend)
-        measures.append(wear_measures(new.worn(worn)))
+        measures.append(wear_measures(new.with_wear(worn)))
     return measures
 
 

@@ -179,7 +179,7 @@ def explorer(result: StudyResult, designs: Sequence[Design]) -> str:
     """Return the plots of all designs, with the soles that a click shows."""
     plan = result.plan
     paths = [dimension.path for dimension in plan.dimensions]
-    allowed, front = result.allowed(designs), {design.number for design in result.front}
+    allowed, front = result.meets_requirements(designs), {design.number for design in result.front}
     columns: list[dict[str, Any]] = []
     rows: list[list[Any]] = [[] for _ in designs]
 
@@ -203,7 +203,9 @@ def explorer(result: StudyResult, designs: Sequence[Design]) -> str:
         values = [design.changes.get(path) for design in designs]
         add(path.split(".", 1)[-1].replace("_", " "), unit_at(path), values, False)
     for goal, values in zip(
-        plan.shown_goals, result.believed(designs, plan.shown_goals)[0].T.tolist(), strict=True
+        plan.shown_goals,
+        result.goal_estimates(designs, plan.shown_goals)[0].T.tolist(),
+        strict=True,
     ):
         add(goal.phrase, goal.unit, values, goal in plan.goals)
     listed = [
@@ -234,11 +236,11 @@ def front_figure(result: StudyResult) -> Figure:
     """Return the first two goals of every design, the front joined by a line."""
     goals, designs = result.plan.goals[:2], result.shown
     values, front = (
-        result.believed(each, result.plan.goals)[0] for each in (designs, result.front)
+        result.goal_estimates(each, result.plan.goals)[0] for each in (designs, result.front)
     )
     figure = new_figure(6.5, 4.2)
     axes = figure.add_subplot()
-    allowed = result.allowed(designs)
+    allowed = result.meets_requirements(designs)
     axes.plot(*values[~allowed, :2].T, "o", mfc="none", color="0.6", label="not allowed")
     axes.plot(*values[allowed, :2].T, "o", color="0.6", label="designs")
     axes.plot(*front[:, :2].T, "o-", color="#0b6fa4", label="front")
@@ -259,7 +261,7 @@ def slices_figure(models: Sequence[Surrogate], centre: np.ndarray) -> Figure:
         for axes, dimension, k in zip(row, dimensions, range(len(dimensions)), strict=True):
             points = np.tile(centre, (SLICE, 1))
             points[:, k] = shares
-            mean, deviation = model.predicted(points)
+            mean, deviation = model.prediction(points)
             values = [dimension.value(float(share)) for share in shares]
             numeric = all(isinstance(value, float) for value in values)
             unit = unit_at(dimension.path)

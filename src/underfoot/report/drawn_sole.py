@@ -51,7 +51,7 @@ class DrawnSole:
         a, b, c = np.linalg.lstsq(design, self.height[known], rcond=None)[0]
         return float(a), float(b), float(c)
 
-    def placed(self, values: Floats) -> Floats:
+    def place_field(self, values: Floats) -> Floats:
         """Return a field of the data set, (..., nx, ny), on this grid, nan beside it."""
         placed = np.full((*values.shape[:-2], *self.height.shape), np.nan)
         placed[(..., *self.computed)] = values[(..., *self.in_data)]

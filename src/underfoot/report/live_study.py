@@ -162,7 +162,9 @@ class LiveStudy(StudyStatus):
         columns = [self._values_of_runs[goal][places] for goal in goals]
         return np.array(columns, dtype=float).reshape(len(goals), len(designs)).T
 
-    def believed(self, designs: Sequence[Design], goals: Sequence[AnyGoal]) -> tuple[Array, Array]:
+    def goal_estimates(
+        self, designs: Sequence[Design], goals: Sequence[AnyGoal]
+    ) -> tuple[Array, Array]:
         """Return goals as they were run, with deviations that are not known."""
         values = self.values(designs, goals)
         return values, np.full_like(values, np.nan)
@@ -332,12 +334,12 @@ def with_live_page(study: Study, progress: Progress, workers: int | None) -> Ite
     """
     writer = _Writer(study, workers or available_processors())
 
-    def told(stage: str, fraction: float, residual: float | None = None) -> None:
+    def tell_progress(stage: str, fraction: float, residual: float | None = None) -> None:
         progress(stage, fraction, residual)
         writer.write_if_due()
 
     try:
-        yield told
+        yield tell_progress
     finally:
         at_work = any(session["ended"] is None for session in study.store.sessions())
         if (study.store.folder / PAGE).exists() and not at_work:  # who ends last says so

@@ -81,7 +81,7 @@ class OutsoleInspection(Presentable):
         )  # fmt: skip
 
     def table(self) -> Table:
-        def spread(values: tuple[float, float, float] | None, unit: str) -> str:
+        def spread_text(values: tuple[float, float, float] | None, unit: str) -> str:
             if values is None:
                 return "none"
             factor, name = tread_unit(unit)
@@ -97,8 +97,8 @@ class OutsoleInspection(Presentable):
             ("Length x width", _lengths(m.length, m.width, digits=4)),
             ("Plan area", _area(m.plan_area, PLAN)),
             ("Land", Message("{land:.0%} of the plan area", land=m.land_ratio)),
-            ("Channel depth, median", spread(m.channel_depth, "m")),
-            ("Channel width, median", spread(m.channel_width, "m")),
+            ("Channel depth, median", spread_text(m.channel_depth, "m")),
+            ("Channel width, median", spread_text(m.channel_width, "m")),
             ("Draft of the walls", "none" if draft is None else f"{np.degrees(draft):.1f}°"),
             (
                 "Channels open to the rim",
@@ -106,7 +106,7 @@ class OutsoleInspection(Presentable):
             ),
             ("Sipes", _sipes(m)),
             ("Lugs", f"{m.lug_count}"),
-            ("Lug area, median", spread(m.lug_area, "m^2")),
+            ("Lug area, median", spread_text(m.lug_area, "m^2")),
             ("Largest untreaded patch", _area(m.patch_area, tread_unit("m^2"))),
             (Part("length x width"), _lengths(m.patch_length, m.patch_width)),
             (Part("largest circle in it"), _lengths(m.patch_circle)),

@@ -59,7 +59,7 @@ def _panel(axes: Axes, shown: Sensitivity, name: str, label: str) -> None:
     unit = shown.nominal.scalars[name].unit
     scale, label_unit = SCALES.get(unit, (1.0, "" if unit == "1" else unit))
     centre = shown.nominal.number(name) * scale
-    effects = shown.ranked(name)[:MOST][::-1]
+    effects = shown.ranked_effects(name)[:MOST][::-1]
     for row, effect in enumerate(effects):
         for end, colour in ((effect.low, LOW), (effect.high, HIGH)):
             value = end.number(name) * scale
@@ -87,11 +87,13 @@ def wear_figure(series: WearSeries) -> Figure:
     figure = new_figure(12.0, 4.6)
     load, peak, friction = figure.subplots(1, 3)
     if series.mode == "patch":
-        place, label = series.measured("worn_patch_area") * 1e6, "worn patch (mm²)"
+        place, label = series.wear_measures("worn_patch_area") * 1e6, "worn patch (mm²)"
     else:
-        place = series.measured("removed_depth") * 1e3
+        place = series.wear_measures("removed_depth") * 1e3
         label = "thickness lost at the most worn place (mm)"
-    worn = zip(series.measured("tread_left"), series.measured("worn_patch_area"), strict=True)
+    worn = zip(
+        series.wear_measures("tread_left"), series.wear_measures("worn_patch_area"), strict=True
+    )
     labels = [f"{left * 1e3:.2g} mm\n{patch * 1e6:.0f} mm²" for left, patch in worn]
     every = math.ceil(len(labels) / 4)  # more would run into one another
     top = load.secondary_xaxis("top")

@@ -232,7 +232,7 @@ def _fields(
         remark = Message(
             "drawn from the solver's cells, as the sole can't be made: {error}", error=error
         )
-        return sole, {name: sole.placed(field) for name, field in kept.items()}, remark, None
+        return sole, {name: sole.place_field(field) for name, field in kept.items()}, remark, None
     return designed.drawn, {name: designed.field(name) for name in names}, "", case
 
 

@@ -90,10 +90,10 @@ def viewer_scene(
             pane(
                 result.name,
                 sole,
-                {q.name: sole.placed(fields[q.name][number]) for q in shown},
+                {q.name: sole.place_field(fields[q.name][number]) for q in shown},
                 designed[number],
                 histories={
-                    name: history([display(t, "s") for t in times], sole.placed(frames))
+                    name: history([display(t, "s") for t in times], sole.place_field(frames))
                     for name, each in past
                     if each is not None
                     for times, frames in (each,)

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from underfoot import core
 from underfoot.core.arrays import Array
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.device import card, on_card
 from underfoot.core.pool import in_processes
 from underfoot.core.presentation import Presentable, Table
@@ -282,7 +283,7 @@ class ContactTable(Presentable):
         nodes = np.mean([self.values[f"flow_factor_{name}"] for name in chosen], axis=0)
         return self._through(nodes, at)[0]
 
-    def sourced(self, quantity: str, pressure: float, speed: float) -> core.SourcedValue:
+    def sourced_value(self, quantity: str, pressure: float, speed: float) -> core.SourcedValue:
         """Return one interpolated quantity with the spread between surfaces as uncertainty."""
         if quantity not in QUANTITIES:
             raise core.unknown_name("quantity", quantity, QUANTITIES, where=self.name)
@@ -302,6 +303,8 @@ class ContactTable(Presentable):
             reason=reason,
             note="uncertainty: standard deviation between surfaces of one texture",
         )
+
+    sourced = renamed_member("sourced", "sourced_value", gone="0.4")
 
     def law(self, speed: float, direction: Direction = "mean") -> TabulatedLaw:
         """Return the pressure-gap law at one speed (m/s; by magnitude, within the grid's edges).
@@ -337,7 +340,7 @@ class ContactTable(Presentable):
             ranges=self.ranges,
         )
 
-    def scaled(self, gap: float, pressure: float, speed: float) -> ContactTable:
+    def scale_contact(self, gap: float, pressure: float, speed: float) -> ContactTable:
         """Return the table of an elastic contact alike, gaps and pressures times factors above 0.
 
         Heights times a make gaps times a, and pressures times a and the ratio of E / (1 - nu^2).
@@ -350,6 +353,8 @@ class ContactTable(Presentable):
         )
         nodes = {"pressure": pressure * self.pressure, "speed": np.array([abs(speed)])}
         return replace(self, **nodes, values=values, deviation=deviation)
+
+    scaled = renamed_member("scaled", "scale_contact", gone="0.4")
 
     def save(self, path: str | Path) -> None:
         """Write the table as one compressed NumPy archive (.npz)."""

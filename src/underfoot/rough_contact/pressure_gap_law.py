@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import Breach, InputError, ValidityRange, breaches
 from underfoot.core.arrays import Array
 from underfoot.core.checks import poisson_ratio, positive
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.presentation import Presentable, SourcedModel, Table
 
 from ._kernels.monotone import pchip_slopes
@@ -220,7 +221,7 @@ class TabulatedLaw(_PresentableLaw):
             values.setflags(write=False)
             object.__setattr__(self, name, values)
 
-    def scaled(self, gap: float, pressure: float) -> "TabulatedLaw":
+    def scale_contact(self, gap: float, pressure: float) -> "TabulatedLaw":
         """Return the law of an elastic contact alike, gaps and pressures times factors above 0.
 
         Heights times a make gaps times a, and pressures times a and the ratio of E / (1 - nu^2);
@@ -234,10 +235,14 @@ class TabulatedLaw(_PresentableLaw):
         nodes = pressure * self.node_pressure
         return replace(self, gap=gap * self.gap, node_pressure=nodes, speed=None, ranges=ranges)
 
-    def changed(self, gap: float, flow: float) -> "TabulatedLaw":
+    scaled = renamed_member("scaled", "scale_contact", gone="0.4")
+
+    def change_gap_and_flow(self, gap: float, flow: float) -> "TabulatedLaw":
         """Return the law with its gaps and flow factors (at most 1) times factors above 0."""
         passing = np.minimum(flow * self.node_flow_factor, 1.0)
         return replace(self, gap=gap * self.gap, node_flow_factor=passing)
+
+    changed = renamed_member("changed", "change_gap_and_flow", gone="0.4")
 
     def pressure(self, gap: ArrayLike) -> Array:
         """Return the asperity pressure (Pa) at mean gap ``gap`` (m), any sign and shape."""

@@ -181,7 +181,7 @@ class _Cell:
         away, _ = KDTree(points % self.size, boxsize=self.size).query(place % self.size)
         return np.where(level > 0, away, -away)
 
-    def opened(self, level: Array, width: float) -> Array:
+    def open_level(self, level: Array, width: float) -> Array:
         """Return the level of what is covered by discs of a width (m) within it."""
         return self.distance(self.distance(level) - width / 2) + width / 2
 
@@ -190,16 +190,16 @@ class _Cell:
         step = max(place[1] for place in self.places)
         return float(np.clip(0.5 + level[:-1, :-1] / step, 0.0, 1.0).mean())
 
-    def repaired(self, level: Array, held: Array) -> Array | None:
+    def repair_land(self, level: Array, held: Array) -> Array | None:
         """Return the distance of land with both smallest widths; None where nothing of it is left.
 
         Narrow channels are filled, narrow land is taken away. A channel that this leaves narrow is
         widened, which takes land, until both hold. ``held`` is positive where channels stay.
         """
-        level = np.minimum(-self.opened(-level, self.channel), -held)
+        level = np.minimum(-self.open_level(-level, self.channel), -held)
         for _ in range(_REPAIRS):
-            level = self.opened(level, self.land)
-            wide = self.opened(-level, self.channel)
+            level = self.open_level(level, self.land)
+            wide = self.open_level(-level, self.channel)
             narrow = np.minimum(-level, -wide - TOLERANCE * self.channel)
             if narrow.max() <= 0:
                 return level
@@ -239,7 +239,7 @@ def free_land(
         most, least, step = None, None, _NARROWEST * (high - low)
         while high - low > step:
             cut = (low + high) / 2
-            level = nodes.repaired(height - cut, held)
+            level = nodes.repair_land(height - cut, held)
             land = 0.0 if level is None else nodes.share(level)
             if level is not None and abs(land - share) <= LAND_ERROR:
                 return _outline_land(nodes, level)
@@ -249,7 +249,9 @@ def free_land(
                 high, least, reached[0] = cut, level, max(reached[0], land)
         if most is None or least is None:
             break
-        held = np.maximum(held, nodes.opened(np.minimum(-least, most), _CORE * smallest_channel))
+        held = np.maximum(
+            held, nodes.open_level(np.minimum(-least, most), _CORE * smallest_channel)
+        )
     near = " or ".join(f"{land:.2f}" for land in reached if 0 < land < 1)
     raise InputError(
         Message(

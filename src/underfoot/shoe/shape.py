@@ -10,6 +10,7 @@ import numpy as np
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
 from underfoot.core.checks import between, not_negative, positive
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.remark import Message
 
 from .tread import ArcChannel, Tread
@@ -173,10 +174,12 @@ class SoleShape(ABC):
             height = height + self.edge_radius - np.sqrt(self.edge_radius**2 - into**2)
         return height
 
-    def worn(self, wear: SoleWear | WearOnSole | None) -> Self:
+    def with_wear(self, wear: SoleWear | WearOnSole | None) -> Self:
         """Return the sole with other wear."""
         new = replace(cast("Any", self), wear=None)
         return new if wear is None else replace(new, wear=fit_wear(wear, new))
+
+    worn = renamed_member("worn", "with_wear", gone="0.4")
 
     def centre_line(self) -> tuple[Array, Array]:
         """Return x and the unworn height (m) along y = 0."""

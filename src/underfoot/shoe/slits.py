@@ -134,14 +134,14 @@ def slits_of(
     staircase = (aligned[0] + aligned[1])[:, 0]
     slit_width, slit_depth = width[near], depth[near]
 
-    def covered(along: Array, across: Array, slope: Array | float) -> Array:
+    def covered_share(along: Array, across: Array, slope: Array | float) -> Array:
         ramp = np.maximum(slope * step * spacing, 1e-9)
         return np.clip(0.5 + level_at(i, j, along, across) / ramp, 0.0, 1.0)
 
     length, place = np.zeros((2, *land.shape)), np.full((2, *land.shape), 0.5)
     for axis, way in enumerate(((forward, none), (none, forward))):
         normal = aligned[1 - axis]
-        on_way = covered(*way, normal)
+        on_way = covered_share(*way, normal)
         crossed = on_way.sum(axis=1) * normal[:, 0] * step * spacing / slit_width
         at = (on_way * forward).sum(axis=1) / np.maximum(on_way.sum(axis=1), 1e-12)
         length[axis][near] = crossed * spacing / staircase
@@ -153,7 +153,7 @@ def slits_of(
     inner_x, inner_y = (part.reshape(1, -1) for part in np.meshgrid(middle, middle, indexing="ij"))
     taken = np.zeros(land.shape)
     # a groove shallower than wide is partly filled by what bulges into it
-    taken[near] = covered(inner_x, inner_y, 1.0).mean(axis=1) * np.minimum(
+    taken[near] = covered_share(inner_x, inner_y, 1.0).mean(axis=1) * np.minimum(
         slit_depth / slit_width, 1.0
     )
     taken *= land

@@ -12,6 +12,7 @@ import numpy as np
 from underfoot.core import InputError, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.checks import between, not_negative, positive
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.remark import Message
 
 from ._kernels import tread_pattern
@@ -313,7 +314,7 @@ class Tread:
             return tread_pattern.wave_line(self.wave_length, self.wave_height)
         return None
 
-    def moved(self, shift: tuple[float, float]) -> Self:
+    def shift_grooves(self, shift: tuple[float, float]) -> Self:
         """Return the pattern with its grooves shifted by (x, y), m."""
 
         def new(place: tuple[float, float]) -> tuple[float, float]:
@@ -321,6 +322,8 @@ class Tread:
 
         grooves = tuple(replace(groove, place=new(groove.place)) for groove in self.grooves)
         return replace(self, offset=new(self.offset), grooves=grooves)
+
+    moved = renamed_member("moved", "shift_grooves", gone="0.4")
 
     def _before_yaw(self, x: Array, y: Array) -> tuple[Array, Array]:
         """Return where places (m) of the turned tread lie in the one that was not turned."""

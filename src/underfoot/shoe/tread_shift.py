@@ -83,13 +83,13 @@ def _likeness(surface: SoleSurface) -> Array:
     value = np.where(inside, surface.land - surface.land[inside].mean(), 0.0)
     known = inside.astype(np.float64)
 
-    def shared(first: Array, other: Array) -> Array:
+    def correlate(first: Array, other: Array) -> Array:
         return np.asarray(fftconvolve(first, other[::-1, ::-1]))
 
-    mine, partner = shared(value**2, known), shared(known, value**2)
-    enough = shared(known, known) > np.count_nonzero(inside) / 3
+    mine, partner = correlate(value**2, known), correlate(known, value**2)
+    enough = correlate(known, known) > np.count_nonzero(inside) / 3
     energy = np.sqrt(np.maximum(mine * partner, 1e-30))
-    correlation = np.where(enough, shared(value, value) / energy, -1.0)
+    correlation = np.where(enough, correlate(value, value) / energy, -1.0)
     reach = int(LONGEST_PERIOD / surface.spacing)
     i, j = (np.arange(n) - n // 2 for n in correlation.shape)
     return np.where(np.hypot(i[:, None], j) <= reach, correlation, -1.0)

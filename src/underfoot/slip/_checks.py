@@ -104,7 +104,7 @@ class LogisticModel(PresentableModel):
         spread = -self.log_odds_slope * sd
         return scalar_or_array(normal_mean_of_logistic(self._log_odds(a, mean), spread))
 
-    def drawn(
+    def draw_probability(
         self, acof: Array, rcof_mean: ArrayLike, rcof_sd: ArrayLike, normal: Callable[[str], Array]
     ) -> Array:
         """Return the mean probability over persons in draws (n,) of ACOF and of slope and x50.

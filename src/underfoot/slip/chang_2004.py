@@ -48,7 +48,7 @@ class Chang2004(PresentableModel):
             certain = ndtr((mean - a) / np.where(sd > 0, sd, 1.0))
         return scalar_or_array(np.where(sd > 0, certain, np.heaviside(mean - a, 0.5)))
 
-    def drawn(
+    def draw_probability(
         self, acof: Array, rcof_mean: ArrayLike, rcof_sd: ArrayLike, normal: Callable[[str], Array]
     ) -> Array:
         """Return the probability in draws (n,) of ACOF: the model has no constants to draw."""

@@ -71,7 +71,7 @@ class RcofPopulation:
             sd_deviation=stretch * self.sd_deviation,
         )
 
-    def drawn(self, normal: Callable[[str], Array]) -> tuple[Any, Any]:
+    def draw_moments(self, normal: Callable[[str], Array]) -> tuple[Any, Any]:
         """Return mean and sd, each (n,) draws where it is not exact; ``normal`` as a model's."""
         mean, sd = self.mean, self.sd
         if self.mean_deviation:

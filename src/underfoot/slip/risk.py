@@ -78,14 +78,14 @@ def slip_chances(
         acof: Draws (n,) of the available friction; below 0 counts as 0, beyond what any sole has
             as the most it has.
         rcof: Required friction of the population, on a slope ``rcof.on_slope``.
-        model: A slip model. One without ``drawn`` is taken as exact.
+        model: A slip model. One without ``draw_probability`` is taken as exact.
         normal: Standard normal draws (n,) by name, of the model's constants and of what the
             population is off by; None draws them.
     """
     drawn = np.clip(np.asarray(acof, dtype=float), 0.0, LARGEST_ACOF)
     normal = normal or _draws_by_name(drawn.size)
-    people = rcof.drawn(normal)
-    known = getattr(model, "drawn", None)
+    people = rcof.draw_moments(normal)
+    known = getattr(model, "draw_probability", None)
     if known is None:
         return np.asarray(model.population(drawn, *people))
     return known(drawn, *people, normal)

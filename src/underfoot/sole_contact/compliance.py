@@ -112,7 +112,7 @@ class ConvolutionCompliance:
             risen += correction.apply(pressure)
         return risen
 
-    def corrected(self, body: BodyCorrection | None, sole: SoleMap) -> ConvolutionCompliance:
+    def correct_body(self, body: BodyCorrection | None, sole: SoleMap) -> ConvolutionCompliance:
         """Return the compliance with the long waves of its body put right; itself for None."""
         if body is None:
             return self
@@ -312,7 +312,7 @@ def layered_compliance(
     real = SoleBody(sole, body, shoe_angle or 0.0, modulus, poisson_ratio, soft)
     correction = body_correction(real, layers.under_waves, known)
     if depth == 0.0:
-        return layers.corrected(correction, sole)
+        return layers.correct_body(correction, sole)
 
     height = lug_height(sole)
     cut = sole.cut or CutCells.none(shape)
@@ -337,7 +337,7 @@ def layered_compliance(
         parts.append((short, np.sqrt(bare)))
     return ConvolutionCompliance(
         shape, parts, lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q), modulus=plane
-    ).corrected(correction, sole)
+    ).correct_body(correction, sole)
 
 
 def body_thickness(sole: SoleMap, thickness: float, shoe_angle: float) -> Array:

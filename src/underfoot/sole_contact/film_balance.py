@@ -141,7 +141,7 @@ class FilmBalance:
             pressure, fraction, net, cavity = self._balance(operator, fluid, full)
             by_gap = operator.by_gap(pressure, fraction)
         overfull = by_fraction.diagonal[:size] * np.maximum(fraction[:size] - 1, 0.0)
-        through = operator.carried(fraction)
+        through = operator.wall_transport(fraction)
         carried = np.bincount(faces.west, through, faces.count)
         carried -= np.bincount(faces.east, through, faces.count)
         stored = self._storage * np.abs(operator.gap * fraction - self._content)

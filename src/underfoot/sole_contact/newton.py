@@ -130,12 +130,12 @@ class Cells:
         ``deflection`` of the whole sole, of any precision, gives the gap of the other cells.
         """
 
-        def placed(values: NDArray[Any], beside: float = 0.0) -> NDArray[Any]:
+        def field_of(values: NDArray[Any], beside: float = 0.0) -> NDArray[Any]:
             field = np.full(self.mask.shape, beside, dtype=values.dtype)
             field[self.numbers] = values
             return field
 
-        pressure = placed(state.pressure)
+        pressure = field_of(state.pressure)
         risen = deflection.apply(pressure.astype(np.float32))
         gap = problem.symmetric(problem.clearance - state.approach + risen)
         gap[self.numbers] = state.gap
@@ -143,10 +143,10 @@ class Cells:
             pressure,
             state.approach,
             gap,
-            placed(state.fluid),
-            placed(state.contact),
-            placed(state.cavitated),
-            placed(state.fraction, 1.0),
+            field_of(state.fluid),
+            field_of(state.contact),
+            field_of(state.cavitated),
+            field_of(state.fraction, 1.0),
         )
 
 
@@ -186,12 +186,12 @@ def implicit_step(
             problem, faces, film, start.gap, content, duration, leaps, upstream, inlet
         )
 
-    def padded(values: NDArray[Any], beside: float = 0.0) -> NDArray[Any]:
+    def pad_values(values: NDArray[Any], beside: float = 0.0) -> NDArray[Any]:
         field = np.full(faces.count, beside, dtype=values.dtype)
         field[:size] = values
         return field
 
-    pressure = padded(start.pressure[:size])
+    pressure = pad_values(start.pressure[:size])
     approach = start.approach
     gap = start.gap
     # a sole that rolls changes its clearance: Newton brings it in, or the guess cuts the floor
@@ -227,9 +227,9 @@ def implicit_step(
                 pressure,
                 approach,
                 gap,
-                padded(floor + np.where(full, above, 0.0)),
-                padded(np.where(full, asperity, total - floor)),
-                film & ~padded(full),
+                pad_values(floor + np.where(full, above, 0.0)),
+                pad_values(np.where(full, asperity, total - floor)),
+                film & ~pad_values(full),
                 np.ones_like(gap) if rows is None else np.minimum(rows.fraction, 1.0),
             )
             return attempt
@@ -243,7 +243,7 @@ def implicit_step(
             break
 
         def product(vector: Array, linear=linear) -> Array:
-            deflection = cells.direction.apply(padded(vector[:-1].astype(np.float32)))
+            deflection = cells.direction.apply(pad_values(vector[:-1].astype(np.float32)))
             out = np.empty_like(vector)
             out[:-1] = linear.residual(vector[:-1], deflection[:size] - vector[-1])
             out[-1] = (vector[:-1] @ width) / whole
@@ -263,7 +263,7 @@ def implicit_step(
         if not np.isfinite(step).all():
             break
         # rounding grows where a film under soft rubber is hardly unique: the image tells it
-        delta = problem.symmetric(padded(step[:-1]))
+        delta = problem.symmetric(pad_values(step[:-1]))
         rise = problem.symmetric(problem.compliance.apply(delta) - step[-1] + missing)
         share = _step_share(problem, local_gap, rise[:size])
         if _cycling(balances):

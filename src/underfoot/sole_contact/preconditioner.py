@@ -124,7 +124,7 @@ class Preconditioner:
         """Return the solver for a linearised problem."""
         faces, size = self.faces, self.faces.size
 
-        def padded(values: Array) -> Array:
+        def pad_values(values: Array) -> Array:
             field = np.zeros(faces.count)
             field[:size] = values
             return field
@@ -134,7 +134,7 @@ class Preconditioner:
         resisted = linear.stiffness * yields * self.scale
         source = self.source * yields * self.width
         none = np.zeros(faces.ahead.size)
-        balance = FaceMatrix(faces, padded(np.ones(size)), none, none)  # a dry cell: v = 0
+        balance = FaceMatrix(faces, pad_values(np.ones(size)), none, none)  # a dry cell: v = 0
         through = FaceMatrix(faces, np.zeros(faces.count), none, none)
         rows = np.zeros(size)
         if film is not None:
@@ -143,14 +143,14 @@ class Preconditioner:
             # fraction in units of pressure: so that both kinds of column have the size of A
             diagonal, unit = film.by_fraction.diagonal[cavity], np.zeros(size)
             unit[cavity] = film.by_pressure.diagonal[cavity] / np.where(diagonal > 0, diagonal, 1.0)
-            mixed = film.by_pressure.columns(padded(full.astype(float)))
-            mixed = mixed.plus(film.by_gap.columns(padded(self.local * yields * full)))
-            mixed = mixed.plus(film.by_fraction.columns(padded(unit)))
+            mixed = film.by_pressure.columns(pad_values(full.astype(float)))
+            mixed = mixed.plus(film.by_gap.columns(pad_values(self.local * yields * full)))
+            mixed = mixed.plus(film.by_fraction.columns(pad_values(unit)))
             scale = np.where(wet, np.abs(mixed.diagonal[:size]), 1.0)
-            held = padded(wet / scale)
+            held = pad_values(wet / scale)
             balance = mixed.rows(held)
             balance.diagonal[:size] += ~wet
-            through = film.by_gap.columns(padded(self.scale * yields)).rows(held)
+            through = film.by_gap.columns(pad_values(self.scale * yields)).rows(held)
             rows = full * film.diagonal / scale
         screened = self._screened.coefficients
         screened[:size] += self.source * resisted * self.width

@@ -240,7 +240,7 @@ class SlidingSole:
             film = np.array(self.history.fluid_load[-HOVERING:])
             return bool(np.ptp(film) < SLOW * least(film[-1]))
 
-        def settled(before: State, step: float) -> bool:
+        def is_settled(before: State, step: float) -> bool:
             after = self._march.state
             share = np.interp(self.counts.rejected - rejected, REJECTED, (0.0, SLOW))
             if slow(float(share)):
@@ -258,7 +258,7 @@ class SlidingSole:
         # what a step takes from its start (faces that lean, edges that let in) needs several steps
         longest_step = longest / LEAST_STEPS
         ramp = self._ramp(longest, normal_force, speed, None)
-        done = self._loop(ramp, longest, longest_step, most_steps, settled)
+        done = self._loop(ramp, longest, longest_step, most_steps, is_settled)
         rests = hovers if self._time >= longest * (1 - 1e-12) else slow
         return self._state(done or rests())
 

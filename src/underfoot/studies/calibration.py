@@ -226,7 +226,7 @@ def contact_profile(study: SlipStudy) -> MisfitProfile:
 
 
 def _published_value(name: str) -> tuple[float, float]:
-    value = Catalogue.load().entry("published", "human_slips_g5").sourced(name, "m/s")
+    value = Catalogue.load().entry("published", "human_slips_g5").sourced_value(name, "m/s")
     return float(value), value.uncertainty or 0.0
 
 

@@ -121,7 +121,7 @@ def cof_draws(
 
 def viscosity_of(fluid: str) -> float:
     """Return the viscosity of a fluid of the report, Pa s."""
-    given = Catalogue.load().entry("fluid", fluid).sourced("viscosity", "Pa*s").value
+    given = Catalogue.load().entry("fluid", fluid).sourced_value("viscosity", "Pa*s").value
     assert given is not None
     return given
 

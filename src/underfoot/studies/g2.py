@@ -165,7 +165,7 @@ def default_predictions(
         )
         drawn = with_reading_error(drawn, draws, name, seed)
         low, high = np.quantile(drawn, [0.025, 0.975], axis=0)
-        kappa = pair.drawn(draws, seed)["kappa"]
+        kappa = pair.draw_inputs(draws, seed)["kappa"]
         predictions[name] = DefaultPrediction(
             cof_points, median, low, high, drawn.mean(axis=1), kappa
         )

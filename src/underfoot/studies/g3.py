@@ -164,7 +164,7 @@ def split(catalogue: Catalogue, draws: PairDraws, sole: str, floor: str, seed: i
     """Return the friction of a pair without fluid, under the oil and under each fluid."""
     shore, (sole_ra, floor_ra) = _pair_numbers(catalogue, sole, floor)
     rq = [(RQ_PER_RA * ra,) * 2 for ra in (sole_ra, floor_ra)]
-    loss = range_95(catalogue.entry("material", SOLES[sole]).sourced("loss_tangent"))
+    loss = range_95(catalogue.entry("material", SOLES[sole]).sourced_value("loss_tangent"))
     assert loss is not None
 
     def friction(fluid: str) -> tuple[Array, float, Array]:
@@ -198,7 +198,7 @@ def _pair_numbers(catalogue: Catalogue, sole: str, floor: str) -> tuple[float, t
     """Return Shore A of the sole, and Ra (m) of sole and floor."""
     own = catalogue.entry("material", SOLES[sole])
     other = catalogue.entry("floor", FLOORS[floor])
-    ra = [float(entry.sourced("roughness.ra", "m")) for entry in (own, other)]
+    ra = [float(entry.sourced_value("roughness.ra", "m")) for entry in (own, other)]
     return float(own.leaf("shore_a").given), (ra[0], ra[1])
 
 

@@ -224,7 +224,7 @@ def reading(
 
 def _draws(name: str, outcome: CaseOutcome, varied: Sensitivity) -> Array:
     """Return draws of a number over open inputs and place of the tracks, about the finest grid."""
-    value, spread = outcome.number(name), outcome.spread(name)
+    value, spread = outcome.number(name), outcome.standard_deviation(name)
     factors = [1.0 + spread / value] if value > LEAST[name] and spread > 0 else []
     most = 500.0
     if name == PEAK:  # no pocket reads more than the highest pressure under the sole
@@ -397,7 +397,9 @@ def conclusions(
     ]
     for one in readings:
         if one.condition.untreaded and one.condition.fluid == "glycerol":
-            load, peak = (varied[one.condition.name].ranked(name)[0] for name in (LOAD, PEAK))
+            load, peak = (
+                varied[one.condition.name].ranked_effects(name)[0] for name in (LOAD, PEAK)
+            )
             sentences.append(
                 f"{one.condition.name}: the load depends most on {load.path}, the peak depends "
                 f"most on {peak.path}."
@@ -473,7 +475,7 @@ def inputs_table(condition: ShoeInFluid, varied: Sensitivity) -> StudyTable:
             "kPa at high": effect.high.number(PEAK) / 1e3,
             "why open": effect.reason,
         }
-        for effect in varied.ranked(PEAK)
+        for effect in varied.ranked_effects(PEAK)
     ]
     return StudyTable.of(
         f"open_inputs_{condition.kind}",
@@ -505,7 +507,7 @@ def depth_table(depths: Sequence[tuple[float, CaseOutcome]]) -> StudyTable:
 def printed_value(name: str, kind: str, unit: str) -> float:
     """Return what the report prints for an untreaded shoe in glycerol."""
     published = Catalogue.load().entry("published", "slip_tester_g4")
-    return float(published.sourced(f"{name}_{kind}_shoe_untreaded_glycerol", unit))
+    return float(published.sourced_value(f"{name}_{kind}_shoe_untreaded_glycerol", unit))
 
 
 def map_figure(readings: Sequence[GridReading]) -> Figure:
@@ -605,7 +607,7 @@ def inputs_figure(condition: ShoeInFluid, varied: Sensitivity, count: int = 8) -
     """Return what one standard deviation of the open inputs does to load and peak."""
     panels = []
     for name, label, scale in ((LOAD, "load by the sensor (N)", 1.0), (PEAK, "peak (kPa)", 1e-3)):
-        effects = varied.ranked(name)[:count][::-1]
+        effects = varied.ranked_effects(name)[:count][::-1]
         layers = [
             Layer("limit", varied.nominal.number(name) * scale, colour="0.4", label="nominal")
         ]

@@ -352,7 +352,7 @@ def tables(
             [
                 {
                     "predictors": ", ".join(names),
-                    "printed": published.sourced(
+                    "printed": published.sourced_value(
                         f"adjusted_r2.{'_'.join(keys[n] for n in names)}", "1"
                     ).value,
                     "ours": value,
@@ -432,8 +432,8 @@ def _speed_pressure_figure(studies: Mapping[str, SlipStudy]) -> Figure:
         label = f"{shoe}, computed" + ("" if r is None else f" (r = {r:.2f})")
         style = {"colour": COLOUR[shoe], "marker": "o"}
         layers.append(points(seen["peak_pressure"] / 1e3, seen["peak_speed"], label, **style))
-        pressure = published.sourced(f"peak_pressure_{shoe}", "Pa")
-        speed = published.sourced(f"peak_slipping_speed_over_sensors_{shoe}", "m/s")
+        pressure = published.sourced_value(f"peak_pressure_{shoe}", "Pa")
+        speed = published.sourced_value(f"peak_slipping_speed_over_sensors_{shoe}", "m/s")
         x, y = float(pressure) / 1e3, float(speed)
         dx, dy = (pressure.uncertainty or 0.0) / 1e3, speed.uncertainty or 0.0
         style = {"colour": PRINTED, "marker": "s" if shoe == "treaded" else "D"}

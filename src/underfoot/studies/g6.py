@@ -265,7 +265,7 @@ def _friction(
         shore,
         mean,
         on_coarse,
-        middle.spread("cof"),
+        middle.standard_deviation("cof"),
         min(ends),
         max(ends),
         tuple(pressures),

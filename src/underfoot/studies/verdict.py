@@ -129,7 +129,9 @@ class ComputedQuantity:
             from scipy.stats import norm
 
             places = np.clip(QUANTILES, 1e-4, 1.0 - 1e-4)
-            quantiles = tuple(map(float, _spread(numbers[0], deviation * norm.ppf(places), scale)))
+            quantiles = tuple(
+                map(float, _step_on_scale(numbers[0], deviation * norm.ppf(places), scale))
+            )
         grids = tuple(
             (float(h), tuple(np.atleast_1d(np.asarray(v, float)).tolist())) for h, v in levels or ()
         )
@@ -169,7 +171,7 @@ class ComputedQuantity:
         return TypeAdapter(cls).validate_python(content)
 
 
-def _spread(value: float, step: np.ndarray, scale: str) -> np.ndarray:
+def _step_on_scale(value: float, step: np.ndarray, scale: str) -> np.ndarray:
     """Return the value with a step of its own unit, taken on a scale that has no bound."""
     if scale == "log" and value > 0.0:
         return value * np.exp(step / value)

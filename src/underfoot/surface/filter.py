@@ -64,7 +64,7 @@ def within_cutoffs(flat: HeightMap, short: float, cutoff: float) -> HeightMap:
         for n, h in zip(rough.shape, rough.spacings, strict=True)
     ]
     inner = tuple(slice(rim, n - rim) for n, rim in zip(rough.shape, rims, strict=True))
-    return rough.changed(rough.heights[inner], "cut to what the filter covers")
+    return rough.replace_heights(rough.heights[inner], "cut to what the filter covers")
 
 
 def _split(surface: Surface, cutoff: float, ends: str) -> tuple[Surface, Surface]:
@@ -116,8 +116,8 @@ def _split(surface: Surface, cutoff: float, ends: str) -> tuple[Surface, Surface
         "short waves kept, Gaussian filter ({name}), cut-off {cutoff}, ends: {ends}", **how
     )
     return (
-        surface.changed(long, long_kept, periodic=periodic),
-        surface.changed(short, short_kept, periodic=periodic),
+        surface.replace_heights(long, long_kept, periodic=periodic),
+        surface.replace_heights(short, short_kept, periodic=periodic),
     )
 
 

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError
 from underfoot.core.checks import host_array
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.remark import Message
 from underfoot.core.unit_text import metres
 
@@ -46,10 +47,12 @@ class Heights:
         """Distance between points along each axis, m."""
         return (self.spacing,)
 
-    def changed(self, heights: np.ndarray, done: str, **changes: Any) -> Self:
+    def replace_heights(self, heights: np.ndarray, done: str, **changes: Any) -> Self:
         """Return the surface with new heights and one more line in ``processing``."""
         processing = (*self.processing, done)
         return replace(cast("Any", self), heights=heights, processing=processing, **changes)
+
+    changed = renamed_member("changed", "replace_heights", gone="0.4")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -155,7 +158,7 @@ class Profile(Heights):
                 allowed=Message("within 0 m to {metres}, two points or more", metres=metres(x[-1])),
             )
         done = Message("cut to {low} to {high}", low=metres(start), high=metres(end))
-        return self.changed(self.heights[inside], done, periodic=False)
+        return self.replace_heights(self.heights[inside], done, periodic=False)
 
 
 def check_heights(heights: np.ndarray) -> None:

@@ -301,7 +301,7 @@ def _x3p_profile(
     points = np.asarray(layer.points(), dtype=float).reshape(-1, 3)
     whole, notes = complete(points[:, 2], fill_missing, str(path))
     profile = profile_from_positions(points[:, 0], whole, resample=resample, source=str(path))
-    return profile.changed(profile.heights, "; ".join((how, *notes)))
+    return profile.replace_heights(profile.heights, "; ".join((how, *notes)))
 
 
 def _read_by_library(read: Callable[[], Any], name: str, path: Path) -> Any:
@@ -350,7 +350,7 @@ def _by_library(
         heights, notes = complete(heights * factor, fill_missing, where)
         x = np.asarray(positions, dtype=float) * factor
         profile = profile_from_positions(x, heights, resample=resample, source=where)
-        return profile.changed(profile.heights, "; ".join((how, *notes)))
+        return profile.replace_heights(profile.heights, "; ".join((how, *notes)))
     sizes = zip(topography.physical_sizes, heights.shape, strict=True)
     sides = [float(size) * factor / n for size, n in sizes]
     periodic = bool(topography.is_periodic)

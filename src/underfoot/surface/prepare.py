@@ -112,7 +112,7 @@ def level_surface(surface: Surface, degree: int = 1) -> Surface:
         degree, Message("polynomial of degree {degree}", degree=degree)
     )
     rest = (z.ravel() - basis @ coefficients).reshape(z.shape)
-    return surface.changed(rest, Message("least squares {form} removed", form=form))
+    return surface.replace_heights(rest, Message("least squares {form} removed", form=form))
 
 
 def without_spikes(surface: Surface) -> tuple[Surface, Surface]:
@@ -131,7 +131,7 @@ def without_spikes(surface: Surface) -> tuple[Surface, Surface]:
     marked = np.where(dead, np.nan, surface.heights)
     heights, _ = fill_missing_heights(marked)
     count = int((~np.isfinite(marked)).sum())
-    whole = surface.changed(
+    whole = surface.replace_heights(
         heights,
         Message(
             "{count} of {size} points stand out of their neighbours (dead pixels) and are "
@@ -166,7 +166,7 @@ def square_cells(surface: HeightMap) -> HeightMap:
     spline = make_interp_spline(
         at, z, k=min(3, n - 1), bc_type="periodic" if surface.periodic else None
     )
-    return surface.changed(
+    return surface.replace_heights(
         np.moveaxis(spline(between), 0, axis),
         Message(
             "oblong cells of {across} by {along} made square",
@@ -214,7 +214,7 @@ def make_periodic(surface: HeightMap, method: str = "taper", *, share: float = 0
             )
         closed = z * np.outer(*(_fade(n, share) for n in z.shape))
         note = f"made periodic by a cosine taper over {100 * share:g} % of each side"
-    return flat.changed(
+    return flat.replace_heights(
         closed,
         f"{note}; rms height {metres(float(np.std(z)))} before, "
         f"{metres(float(np.std(closed)))} after",

@@ -263,7 +263,7 @@ def read_profile(
             source=data.where,
         )
     for note in (*data.notes, *notes):
-        profile = profile.changed(profile.heights, note)
+        profile = profile.replace_heights(profile.heights, note)
     return profile
 
 

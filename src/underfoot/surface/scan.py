@@ -143,7 +143,7 @@ class Scan(Presentable):
     def table(self) -> Table:
         """Return the numbers with their standard errors."""
 
-        def shown(value: SourcedValue) -> str:
+        def value_text(value: SourcedValue) -> str:
             if value.value is None:
                 return "not estimated"
             spread = (
@@ -154,14 +154,14 @@ class Scan(Presentable):
         rows = [
             (
                 QUANTITIES[name][0],
-                shown(value),
+                value_text(value),
                 value.reason if value.value is None else QUANTITIES[name][2],
             )
             for name, value in self.values.items()
         ]
         roll = "none" if self.roll_off is None else display(self.roll_off, "m")
         rows += [
-            ("Hurst exponent", shown(self.hurst), self.hurst.note),
+            ("Hurst exponent", value_text(self.hurst), self.hurst.note),
             ("Roll-off", roll, "longer waves carry no more height"),
             ("Longest wave", display(self.waves[0], "m"), "half the scan"),
             ("Shortest wave", display(self.waves[1], "m"), "what instrument and spacing resolve"),

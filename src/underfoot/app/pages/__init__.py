@@ -20,7 +20,7 @@ write the module and its line in ``PAGES``; nothing else names it.
   as text) and stands in ``underfoot.app.work`` or a module ``work_NAME`` beside it. A page never
   imports that module: the server must stay free of SciPy, xarray, pandas and Matplotlib.
 - A task of the queue: ``task.state``, ``task.fraction``, ``task.answer``; ``await
-  session.jobs.finished(task)``. What lasts is written into the project's folder by the function.
+  session.jobs.wait_for(task)``. What lasts is written into the project's folder by the function.
 - ``session.project``: folders and variants (``project.case(name)``, ``.copy(name, wanted,
   {path: value})``, ``.result_folder(name)``, ``.results()``). ``session.variant`` is the one shown.
 - ``session.go("/answer", variant=name)`` opens a page; ``session.query["variant"]`` reads it there.

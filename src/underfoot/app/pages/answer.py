@@ -127,7 +127,7 @@ class _Answer:
     def _follow(self, task: QueuedTask) -> None:
         self.run_button.disable()
 
-        async def ended(done: QueuedTask) -> None:
+        async def show_end(done: QueuedTask) -> None:
             self.run_button.enable()
             with self.progress:
                 _alert(done.problem)
@@ -136,7 +136,7 @@ class _Answer:
 
         self.progress.clear()
         with self.progress:
-            task_line(self.session, task, ended)
+            task_line(self.session, task, show_end)
 
     def _fill(self) -> None:
         self.place.clear()
@@ -247,11 +247,11 @@ class _Answer:
             choice = ui.select(computed, label=self.text("answer.known"), value=known)
             choice.props("dense outlined options-dense clearable")
 
-            def chosen() -> None:
+            def show_choice() -> None:
                 project.known = choice.value
                 self._beside(answer)
 
-            choice.on_value_change(chosen)
+            choice.on_value_change(show_choice)
             if known:
                 pair = address("/compare", variants=f"{known}|{self.name}")
                 ui.link(self.text("answer.how_sure"), pair)
@@ -355,7 +355,7 @@ class _Answer:
         )
         self.behind.clear()
 
-        async def ended(done: QueuedTask) -> None:
+        async def show_end(done: QueuedTask) -> None:
             if done is not self.tried:
                 return
             with self.behind:
@@ -385,7 +385,7 @@ class _Answer:
                 keep.props("no-caps outline")
 
         with self.behind:
-            task_line(self.session, self.tried, ended)
+            task_line(self.session, self.tried, show_end)
 
     def _keep(self, folder: str, changes: Mapping[str, Any]) -> None:
         project = self.session.project

@@ -121,12 +121,12 @@ class _Compare:
             words = self.text("compare.separate")
             task = self.session.submit(words, SEPARATED, self.folders(), about=about, first=True)
 
-        async def ended(done: QueuedTask) -> None:
+        async def show_end(done: QueuedTask) -> None:
             if done.answer and self.choice.value == chosen:
                 self._say(done.answer)
 
         with self.summary:
-            task_line(self.session, task, ended)
+            task_line(self.session, task, show_end)
 
     async def _equal_land(self) -> None:
         """Make a variant of the second with the land of the first, compute and compare it."""
@@ -160,7 +160,7 @@ class _Compare:
             self.equal.clear()
             show(chosen)
 
-        async def ended(done: QueuedTask) -> None:
+        async def show_end(done: QueuedTask) -> None:
             if done.state == DONE and new in project.variants():
                 show([first, new])
 
@@ -169,7 +169,7 @@ class _Compare:
             button = ui.button(self.text("variant.undo"), icon="undo", on_click=undo)
             button.props("flat no-caps dense data-step=undo")
             task = begin_run(self.session, new)
-            task_line(self.session, task, ended)
+            task_line(self.session, task, show_end)
 
     async def _glb(self) -> None:
         for name, folder in zip(self.choice.value, self.folders(), strict=True):

@@ -146,13 +146,13 @@ class _Design:
     def draw(self) -> None:
         """Draw the sole of the file."""
 
-        async def drawn() -> None:
+        async def draw_first() -> None:
             answer = await self._draw({})
             self.session.jobs.warm()
             self.view.show(answer["html"])
             ui.run_javascript(f"showTexts({as_json(answer['texts'])})")
 
-        ui.timer(0, drawn, once=True)
+        ui.timer(0, draw_first, once=True)
 
     def change(self, changes: dict[str, Any]) -> None:
         """Change the file of the variant and what is shown of it."""

@@ -32,7 +32,7 @@ def _place(
     present: str | None,
     used: Callable[[], None],
 ) -> None:
-    async def arrived(paths: list[str]) -> None:
+    async def take_file(paths: list[str]) -> None:
         file = paths[0]
         if path == COMPOUND and not file.endswith(".toml"):  # a test of the rubber
             full = str(session.project.inside(file))
@@ -49,5 +49,5 @@ def _place(
             ui.label(session.text(f"measured.{path}", file=present.rpartition("/")[2]))
             ui.button(session.text("measured.leave"), on_click=leave).props("flat dense no-caps")
     drop_zone(
-        session, "measured", arrived, label=session.text(f"measured.drop.{path}"), accept=accept
+        session, "measured", take_file, label=session.text(f"measured.drop.{path}"), accept=accept
     )

@@ -32,7 +32,9 @@ class _Place:
         with ui.element("div").classes("no-print"):
             title(self.text("place.title")).classes("hidden-title")
             ui.label(self.text("place.lead")).classes("lead")
-            drop_zone(session, FOLDER, self.arrived, label=self.text("place.drop"), accept=".toml")
+            drop_zone(
+                session, FOLDER, self.take_file, label=self.text("place.drop"), accept=".toml"
+            )
             self.choice = ui.select(self.names(), label=self.text("place.of_project"))
             self.choice.props("dense outlined").classes("compare-choice")
             self.choice.on_value_change(lambda event: self.show(event.value))
@@ -46,11 +48,11 @@ class _Place:
         """Return the names of the places of the project."""
         return sorted(path.stem for path in self.folder.glob("*.toml"))
 
-    def stored(self, name: str) -> Path:
+    def stored_file(self, name: str) -> Path:
         """Return the file that a computed answer stands in."""
         return self.folder / name / "shown.json"
 
-    async def arrived(self, paths: list[str]) -> None:
+    async def take_file(self, paths: list[str]) -> None:
         """Compute the place of a file that was dropped."""
         name = Path(paths[0]).stem
         self.choice.set_options(self.names())
@@ -64,9 +66,9 @@ class _Place:
         task = self.session.submit(self.text("place.job"), WORK, str(file), str(folder), about=name)
         self.busy.clear()
         with self.busy:
-            task_line(self.session, task, partial(self.ended, name))
+            task_line(self.session, task, partial(self.show_end, name))
 
-    async def ended(self, name: str, task: QueuedTask) -> None:
+    async def show_end(self, name: str, task: QueuedTask) -> None:
         """Show what came of a task, and what there was before it where nothing did."""
         self.show(name)
         if task.problem:
@@ -76,7 +78,7 @@ class _Place:
     def show(self, name: str) -> None:
         """Show the stored answer of a place, or that there is none."""
         self.answer.clear()
-        file, stored = self.folder / f"{name}.toml", self.stored(name)
+        file, stored = self.folder / f"{name}.toml", self.stored_file(name)
         with self.answer:
             interruption(self.session, self.session.jobs.latest(name, WORK))
             if not stored.exists():

@@ -141,11 +141,11 @@ def _others(session: Session) -> None:
     with ui.element("div").classes("row"):
         field = ui.input(text("project.folder")).props("dense outlined").classes("compare-choice")
 
-        async def opened() -> None:
+        async def open_folder() -> None:
             wanted = Path((field.value or "").strip()).expanduser()
             if not (field.value or "").strip():
                 raise InputError("a folder is needed", where=text("project.folder"))
             await go(wanted if wanted.is_absolute() else session.project.folder.parent / wanted)
 
-        field.on("keydown.enter", opened)
-        ui.button(text("project.open"), on_click=opened).props("no-caps outline")
+        field.on("keydown.enter", open_folder)
+        ui.button(text("project.open"), on_click=open_folder).props("no-caps outline")

@@ -108,7 +108,7 @@ def _choices(
         replace_file(project, name, reference, file)
         mended()
 
-    async def arrived(paths: list[str]) -> None:
+    async def take_drop(paths: list[str]) -> None:
         take(project.inside(paths[0]))
 
     ui.label(text("repair.lacks", file=path.name))
@@ -124,6 +124,6 @@ def _choices(
             choice = ui.select(other, label=text("repair.other")).props("dense outlined")
             choice.on_value_change(lambda event: take(path.with_name(event.value)))
     drop_zone(
-        session, path.parent.name, arrived, label=text("repair.drop", file=path.name),
+        session, path.parent.name, take_drop, label=text("repair.drop", file=path.name),
         accept=path.suffix,
     )  # fmt: skip

@@ -40,10 +40,10 @@ def build(session: Session, name: str, view: SoleView, used: Callable[[], None])
     text = session.text
     place = ui.element("div")
 
-    async def arrived(paths: list[str]) -> None:
+    async def inspect_file(paths: list[str]) -> None:
         _Inspection(session, name, paths[0], view, used, place)
 
-    drop_zone(session, "soles", arrived, label=text("sole_file.drop"), accept=ACCEPT)
+    drop_zone(session, "soles", inspect_file, label=text("sole_file.drop"), accept=ACCEPT)
     place.move(target_index=-1)
     files = [
         path

@@ -83,18 +83,20 @@ def _recent(session: Session) -> None:
 def _pack(session: Session) -> None:
     """Offer the project as a ZIP, beside what computes."""
 
-    async def packed() -> None:
+    async def pack_project() -> None:
         button.disable()
         folder = str(session.project.folder)
         task = session.submit(text("start.pack"), "underfoot.app.work:zipped", folder)
-        await session.jobs.finished(task)
+        await session.jobs.wait_for(task)
         button.enable()
         if task.answer:
             ui.download.file(task.answer)
 
     text = session.text
     ui.link(text("project.title"), "/project")
-    button = ui.button(text("start.pack"), icon="archive", on_click=packed).props("no-caps flat")
+    button = ui.button(text("start.pack"), icon="archive", on_click=pack_project).props(
+        "no-caps flat"
+    )
 
 
 def _tour(session: Session) -> None:
@@ -114,7 +116,7 @@ def _tour(session: Session) -> None:
                     ui.button(text("tour.skip"), on_click=dialog.close).props("no-caps flat")
     ui.button(text("tour.open"), icon="help_outline", on_click=dialog.open).props("no-caps flat")
     request, project = ui.context.client.request, session.project
-    new = not project.variants() and not project.removed()
+    new = not project.variants() and not project.removed_variants()
     if new and (request is None or "toured" not in request.cookies):
         dialog.open()
         ui.run_javascript(f'document.cookie = "toured=1; {KEPT}"')

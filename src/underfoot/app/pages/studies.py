@@ -129,7 +129,7 @@ class _Study:
                 with ui.tab_panels(tabs, value=made[0], animated=False).props("keep-alive"):
                     self.form = ui.tab_panel(made[0])
                     with ui.tab_panel(made[1]):
-                        self.editor = ui.textarea(value=self.written()).classes("study-file")
+                        self.editor = ui.textarea(value=self.study_text()).classes("study-file")
                         self.editor.props("autogrow outlined spellcheck=false")
                         self.editor.on("blur", self._take_text)
             with ui.element("section").classes("study-results"):
@@ -155,7 +155,7 @@ class _Study:
             each.set_visibility(False)
         ui.timer(0, self._open, once=True)
 
-    def written(self) -> str:
+    def study_text(self) -> str:
         """Return the study file."""
         return self.file.read_text(encoding="utf-8")
 
@@ -178,7 +178,7 @@ class _Study:
     async def _fill(self) -> None:
         """Fill the form from the file."""
         try:
-            plain = await self.session.ask(f"{WORK}:form", self.written())
+            plain = await self.session.ask(f"{WORK}:form", self.study_text())
         except UnderfootError:
             return  # the check says what is wrong with the text
         self.form.clear()
@@ -205,10 +205,10 @@ class _Study:
         choice = ui.select({**({base: base} if base else {}), **known}, value=base or None)
         choice.props("dense outlined options-dense").props(f'label="{self.text("studies.base")}"')
 
-        async def changed() -> None:
+        async def keep_base() -> None:
             await self.keep("base", choice.value)
 
-        choice.on_value_change(changed)
+        choice.on_value_change(keep_base)
 
     def _goals(self, goal: str, given: Mapping[str, Any]) -> None:
         listed = given.get(goal, [])
@@ -216,11 +216,11 @@ class _Study:
         area = ui.textarea(self.text(f"studies.{goal}"), value=lines)
         area.props("autogrow dense outlined spellcheck=false")
 
-        async def changed() -> None:
+        async def keep_goals() -> None:
             wanted = [line.strip() for line in (area.value or "").splitlines() if line.strip()]
             await self.keep("outputs", {goal: wanted or None}, part=True)
 
-        area.on("blur", changed)
+        area.on("blur", keep_goals)
 
     def _method(self, key: str, options: tuple[str, ...], given: Mapping[str, Any]) -> None:
         value, label = given.get(key, ""), self.text(f"studies.{key}")
@@ -234,18 +234,18 @@ class _Study:
             field.props("inputmode=numeric")
         field.props("dense outlined")
 
-        async def changed() -> None:
+        async def keep_field() -> None:
             try:
                 new = (field.value or None) if options else read_count(self.session, field)
             except InputError:
                 return  # the field says what is wrong
             await self.keep("method", {key: new}, part=True)
 
-        field.on_value_change(changed) if options else field.on("blur", changed)
+        field.on_value_change(keep_field) if options else field.on("blur", keep_field)
 
     async def keep(self, section: str, value: Any, *, part: bool = False) -> None:
         """Write a section of the file anew, or with ``part`` some keys of it (None: gone)."""
-        document = tomlkit.parse(self.written())
+        document = tomlkit.parse(self.study_text())
         if isinstance(value, Mapping):
             table = document.get(section) if part else None
             table = tomlkit.table() if table is None else table
@@ -264,12 +264,12 @@ class _Study:
 
     async def _take_text(self) -> None:
         text = self.editor.value or ""
-        if text != self.written():
+        if text != self.study_text():
             await self._write(text)
             await self._fill()
 
     async def _write(self, text: str) -> None:
-        if text == self.written():
+        if text == self.study_text():
             return
         with whole_file(self.file) as part:
             part.write_text(text, encoding="utf-8")
@@ -327,7 +327,7 @@ class _Study:
         task = self.session.jobs.latest(self.name, COMPUTED)
         if task is not None and task.open:
             self.session.jobs.cancel(task)
-            await self.session.jobs.finished(task)
+            await self.session.jobs.wait_for(task)
         if self.sheet and self.sheet["budget"] and more:
             await self.keep("method", {"budget": self.sheet["budget"] + more}, part=True)
             await self._fill()
@@ -336,7 +336,7 @@ class _Study:
     def _follow(self, task: QueuedTask) -> None:
         timer = self._watch()
 
-        async def done(ended: QueuedTask) -> None:
+        async def show_end(ended: QueuedTask) -> None:
             timer.deactivate()
             if ended.problem:
                 self.session.tell(InputError(ended.problem))
@@ -344,7 +344,7 @@ class _Study:
             await self._show()
 
         with self.progress:
-            task_line(self.session, task, done)
+            task_line(self.session, task, show_end)
 
     def _watch(self, *, others: bool = False) -> ui.timer:
         """Show again and again how far it is, with ``others`` as long as they work on it."""
@@ -432,20 +432,20 @@ class _Rows:
             fields: dict[str, Any] = {}
             good: list[Any] = [path, value]
 
-            def read() -> tuple[str, Any]:
+            def read_row() -> tuple[str, Any]:
                 at, comma = choice.value or "", self.text.comma
                 given = {key: field.value or "" for key, field in fields.items()}
                 for key in given.keys() - {"kind"}:
                     fields[key].error = None
 
-                def told(key: str, reader: Callable[[str], Any]) -> Any:
+                def read_cell(key: str, reader: Callable[[str], Any]) -> Any:
                     return read_field(fields[key], reader)
 
                 with suppress(InputError):  # its field tells it; the file keeps what it has
-                    good[:] = at, _value(self.section, at, given, comma=comma, read=told)
+                    good[:] = at, _value(self.section, at, given, comma=comma, read=read_cell)
                 return good[0], good[1]
 
-            self._keep(row, read)
+            self._keep(row, read_row)
             fields |= {key: self._field(key, shown[key]) for key in FIELDS[self.section]}
             choice.on_value_change(lambda: self._propose(choice.value, fields))
 
@@ -456,7 +456,7 @@ class _Rows:
         async def remove() -> None:
             self.rows.remove(read)
             row.delete()
-            await self.changed()
+            await self.write_section()
 
         gone = ui.button(icon="close", on_click=remove).props("flat round dense")
         gone.props(f'aria-label="{self.text("studies.remove")}"')
@@ -466,16 +466,18 @@ class _Rows:
         if key == "kind":
             kinds = {kind: self.text(f"studies.{kind}") for kind in KINDS}
             made: Any = ui.select(kinds, value=value or "normal", label=label)
-            made.on_value_change(self.changed)
+            made.on_value_change(self.write_section)
         else:
             made = ui.input(label, value=value)
-            made.on("blur", self.changed)
-            made.on("keydown.enter", self.changed)
+            made.on("blur", self.write_section)
+            made.on("keydown.enter", self.write_section)
         return made.props("dense outlined").classes(f"study-{key}")
 
     async def _propose(self, path: str, fields: Mapping[str, Any]) -> None:
         """Propose a range about the value of the base, where the path is new."""
-        variant = (await self.page.session.ask(f"{WORK}:form", self.page.written())).get("base", "")
+        variant = (await self.page.session.ask(f"{WORK}:form", self.page.study_text())).get(
+            "base", ""
+        )
         name = str(variant).removeprefix("../variants/").removesuffix(".toml")
         known = name in self.page.session.project.variants()
         value = self.page.session.project.case(name).value(path) if known and "." in path else None
@@ -484,9 +486,9 @@ class _Rows:
             for key, factor in ends.items():
                 if key in fields:
                     fields[key].value = display(value * factor, unit)
-        await self.changed()
+        await self.write_section()
 
-    async def changed(self) -> None:
+    async def write_section(self) -> None:
         """Write the section as its rows say; rows that say nothing yet are left out."""
         fields = dict(read() for read in self.rows)
         await self.page.keep(self.section, {k: v for k, v in fields.items() if k and v})

@@ -70,7 +70,7 @@ class _Trials:
         session, text = self.session, self.session.text
         arriving = ARRIVING + secrets.token_hex(4)
 
-        def arrived(event: GenericEventArguments) -> None:
+        def take_folder(event: GenericEventArguments) -> None:
             name = self._settle_folder(arriving)
             if name:
                 self.open(name)
@@ -81,7 +81,7 @@ class _Trials:
         with self.place:
             title(text("trials.title"))
             ui.label(text("trials.lead")).classes("lead")
-            FolderDrop(session, arriving).on("arrived", arrived)
+            FolderDrop(session, arriving).on("arrived", take_folder)
             made = ui.button(text("trials.try"), on_click=self.make_example)
             made.props("flat no-caps")
             if studies(session.project):

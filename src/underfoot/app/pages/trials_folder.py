@@ -67,15 +67,15 @@ class FolderView:
                 ui.label(text("trials.names_hint")).classes("soft")
             merge = ui.checkbox(text("trials.merge"), value=settings["merge_spelling"])
 
-        async def changed() -> None:
+        async def keep_settings() -> None:
             chosen = {"protocol": self.protocol.value, "merge_spelling": merge.value}
             if self.study.keep({**chosen, "names": (names.value or "").strip()}):
                 await self.refresh()
 
-        self.protocol.on_value_change(changed)
-        merge.on_value_change(changed)
-        names.on("blur", changed)
-        names.on("keydown.enter", changed)
+        self.protocol.on_value_change(keep_settings)
+        merge.on_value_change(keep_settings)
+        names.on("blur", keep_settings)
+        names.on("keydown.enter", keep_settings)
 
     async def refresh(self) -> None:
         """Analyse the folder anew; what has not changed is known already."""
@@ -173,7 +173,7 @@ class FolderView:
             text("trials.report_job"), work, self.study.asked, about=self.study.name
         )
 
-        async def done(ended: QueuedTask) -> None:
+        async def show_end(ended: QueuedTask) -> None:
             if ended.problem:
                 session.tell(InputError(ended.problem))
             elif ended.answer:
@@ -184,7 +184,7 @@ class FolderView:
 
         self.report_place.clear()
         with self.report_place:
-            task_line(session, task, done)
+            task_line(session, task, show_end)
 
 
 def _study_table(shown: Mapping[str, Any]) -> None:

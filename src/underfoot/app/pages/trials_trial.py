@@ -166,7 +166,7 @@ class TrialView:
         ui.label(self.text("trials.drag")).classes("soft")
 
     def _change_button(self, key: str, change: dict[str, Any]) -> None:
-        made = ui.button(self.text(key), on_click=lambda: self.tried(change))
+        made = ui.button(self.text(key), on_click=lambda: self.try_change(change))
         made.props("outline no-caps dense")
 
     def _reason(self) -> None:
@@ -204,9 +204,11 @@ class TrialView:
 
     async def _drag_mark(self, event: GenericEventArguments) -> None:
         value = f"{event.args['time']:.4f} s"
-        await self.tried({"step": self.view["chosen"], "what": event.args["id"], "value": value})
+        await self.try_change(
+            {"step": self.view["chosen"], "what": event.args["id"], "value": value}
+        )
 
-    async def tried(self, change: dict[str, Any]) -> None:
+    async def try_change(self, change: dict[str, Any]) -> None:
         """Show what an edit would do; it is not written."""
         if await self._ask_change(change, keep=False):
             self.pending = change

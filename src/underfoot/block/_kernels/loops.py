@@ -76,11 +76,11 @@ def _write_if_new(path: Path, text: str) -> bool:
 def prefer_wide_registers(typing_context: Any) -> Any:
     """Mark the function it stands in; costs nothing when run."""
 
-    def marked(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    def mark_function(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         attributes = builder.function.attributes
         # llvmlite checks names against a list that has no text attributes; the set itself takes it.
         if isinstance(attributes, set):
             set.add(attributes, WIDE)
         return context.get_dummy_value()
 
-    return types.void(), marked
+    return types.void(), mark_function

@@ -132,7 +132,9 @@ class _Batch:
         parts = (None if one is None else members(one, index) for one in fields)
         return _Batch(self.operators.of(index), courses, *parts)
 
-    def clipped(self, n: int, height: AnyArray, double: bool) -> tuple[AnyArray, AnyArray, float]:
+    def clip_negative(
+        self, n: int, height: AnyArray, double: bool
+    ) -> tuple[AnyArray, AnyArray, float]:
         """Return (pressure, gap, error) of a member with its negative pressures taken out."""
         course = self.courses[n]
         course.products += 1
@@ -183,14 +185,14 @@ def _by_mattresses(
     soft = Search(max(_MATTRESS_TOLERANCE, search.tolerance), 12, False, reduction=last.reduction)
     steps, products = 0, 0
     while softness > 0.1 * least:
-        with operators.softened(softness):
+        with operators.soften_body(softness):
             (state,) = _on_grid(operators, height, pressure, [mean], workspace, soft)
         steps, products = steps + state.steps, products + state.products
         if state.converged:
             pressure = state.pressure
         del state  # its fields make room for the next
         softness *= _THINNER
-    with operators.softened(0.0):
+    with operators.soften_body(0.0):
         (state,) = _on_grid(operators, height, pressure, [mean], workspace, last)
     workspace.steps = before
     state.steps += steps
@@ -241,7 +243,7 @@ def _on_grid(
                 workspace.release()
             for n in failed:
                 course = batch.courses[n]
-                *fields, course.error = batch.clipped(n, height, double)
+                *fields, course.error = batch.clip_negative(n, height, double)
                 states[course.number] = course.state(*fields, converged=False)
             if exact:
                 waiting.append(batch.of(exact))
@@ -307,7 +309,7 @@ def _step(
     residual = xp.astype(residual, xp.float32)
     residual *= -1.0
     reduction = [course.reduction for course in courses]
-    p += part.spread(residual_correction(operators, part, residual, reduction, workspace))
+    p += part.full_field(residual_correction(operators, part, residual, reduction, workspace))
     residual = None
     if double:
         workspace.release()
@@ -341,7 +343,7 @@ def _step(
     for n, course in enumerate(courses):
         if double and ends[n] is _End.ON and course.error <= search.tolerance:
             # a node on the very edge may change sides for ever: see whether it matters
-            *trial, error = batch.clipped(n, height, double)
+            *trial, error = batch.clip_negative(n, height, double)
             if error <= search.tolerance:
                 course.history[-1] = course.error = error
                 states[course.number], ends[n] = course.state(*trial), _End.DONE

@@ -70,14 +70,14 @@ class Restriction:
 
     def through(self, product: Callable[..., AnyArray], vector: AnyArray) -> AnyArray:
         """Return ``product`` of the field of a vector as a new vector."""
-        field = product(self.spread(vector), self._buffer)
+        field = product(self.full_field(vector), self._buffer)
         if self.gathered:
             return self.take(field)
         rows = flat(field, self.xp)
         rows *= self._mask
         return rows
 
-    def spread(self, vector: AnyArray) -> AnyArray:
+    def full_field(self, vector: AnyArray) -> AnyArray:
         """Return the field of a vector: a shared buffer or a view, not to be written to."""
         xp = self.xp
         if not self.gathered:
@@ -128,11 +128,11 @@ class Restriction:
         table = xp.concat([number[shift:][first] for shift in shifts])
         factors = xp.asarray(np.ascontiguousarray(weights), device=zero.device)
 
-        def convolved(vector: AnyArray) -> AnyArray:
+        def convolve_near(vector: AnyArray) -> AnyArray:
             around = xp.concat((vector[0, :], zero))[table]
             return (factors @ xp.reshape(around, (9, -1)))[None, :]
 
-        return convolved
+        return convolve_near
 
 
 class Workspace:

@@ -93,7 +93,7 @@ class Operators:
         return some
 
     @contextmanager
-    def softened(self, softness: float) -> Iterator[None]:
+    def soften_body(self, softness: float) -> Iterator[None]:
         """Add a soft mattress, u = softness p at every node, to the body inside the block.
 
         It acts on the products in single precision only. ``pressure`` becomes the inverse of the

@@ -41,7 +41,7 @@ def read_gltf(path: Path) -> MeshFile:
     Raises:
         DataError: Damaged; glTF 1; a file beside it is missing; nodes that hold each other.
     """
-    return _Asset(path).shown()
+    return _Asset(path).build_mesh()
 
 
 class _Asset:
@@ -61,7 +61,7 @@ class _Asset:
         self.unmet: dict[Unmet, None] = {}
         self.faces = 0
 
-    def shown(self) -> MeshFile:
+    def build_mesh(self) -> MeshFile:
         """Return the bodies of the scene."""
         try:
             self._demands()

@@ -120,7 +120,7 @@ def read_3mf(path: Path) -> MeshFile:
     """
     optional_module("lxml", "cad", "Reading 3MF")
     with zipfile.ZipFile(path) as archive:
-        return _Package(archive, str(path)).built()
+        return _Package(archive, str(path)).build_mesh()
 
 
 class _Package:
@@ -136,7 +136,7 @@ class _Package:
         self.unmet: dict[Unmet, None] = {}
         self.counts: dict[Key, int] = {}
 
-    def built(self) -> MeshFile:
+    def build_mesh(self) -> MeshFile:
         """Return the bodies of all items."""
         start = self._start()
         root = self._root(start)

@@ -171,7 +171,7 @@ def _half_ring(channel: ArcChannel) -> Any:
     x = channel.position + channel.radius
     outer, inner = channel.radius + channel.width / 2, channel.radius - channel.width / 2
 
-    def closed(radius: float) -> Any:
+    def half_disc(radius: float) -> Any:
         ends = [kernel().Pnt(x * MM, side * radius * MM, -_BELOW * MM) for side in (-1, 1)]
         return kernel().Face(
             kernel().Wire(
@@ -179,7 +179,7 @@ def _half_ring(channel: ArcChannel) -> Any:
             )
         )
 
-    return raise_face(closed(outer), 0.3) - raise_face(closed(inner), 0.3)
+    return raise_face(half_disc(outer), 0.3) - raise_face(half_disc(inner), 0.3)
 
 
 def _round_edges(

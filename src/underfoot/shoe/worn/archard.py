@@ -74,7 +74,7 @@ def archard_wear(
     state = begin or ArchardStep(WornMap(x, y, np.zeros((x.size, y.size))), 0.0)
     while state.worn.depth < depth * (1 - 1e-6):
         progress("Wearing the sole", state.worn.depth / depth)
-        worn_shape = shape.worn(state.worn)
+        worn_shape = shape.with_wear(state.worn)
         pressure = np.zeros((x.size, y.size))
         for angle in angles:
             sole, contact_pressure = contact(worn_shape, angle)

@@ -58,7 +58,7 @@ def wear_measures(shape: SoleShape, *, spacing: float = MEASURING_CELL) -> WearM
         (rows + 0.5) * spacing, (columns + 0.5) * spacing - shape.width / 2, indexing="ij"
     )
     inside = shape.inward_distance(x, y) > 0
-    new = shape.worn(None)
+    new = shape.with_wear(None)
     removed = np.where(inside, shape.land_height(x, y) - shape.unworn_height(x, y), 0.0)
     raised = (cut_heel(shape, x, y)[0] - cut_heel(new, x, y)[0])[inside]
     depth = np.where(inside, 0.0 if shape.tread is None else shape.tread.depth, 0.0)

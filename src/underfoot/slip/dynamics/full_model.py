@@ -104,7 +104,7 @@ class SoleFoot:
         )
         return SoleInstant(state, self._law)
 
-    def settled(self, *, normal_force: float, speed: float) -> SoleInstant:
+    def settle_load(self, *, normal_force: float, speed: float) -> SoleInstant:
         """Carry on at constant load and speed until nothing moves."""
         return SoleInstant(self._sliding.settle(normal_force=normal_force, speed=speed), self._law)
 

@@ -417,7 +417,7 @@ def fitted_reduced(
     def residual(z: Array) -> Array:
         return _residual(replace(blank, constants=constants(z)), runs)
 
-    def improved(z: Array, most: int) -> Any:
+    def improve_fit(z: Array, most: int) -> Any:
         return least_squares(
             residual, z, bounds=(lows, highs), loss="soft_l1", diff_step=1e-4, max_nfev=most
         )
@@ -432,12 +432,12 @@ def fitted_reduced(
         z = np.array(
             [start[i] if s else math.log(start[i]) for i, s in zip(free, signed, strict=True)]
         )
-        trial = improved(np.clip(z, lows + 1e-6, highs - 1e-6), FIRST_LOOK)
+        trial = improve_fit(np.clip(z, lows + 1e-6, highs - 1e-6), FIRST_LOOK)
         if best is None or trial.cost < best.cost:
             best = trial
     assert best is not None
     progress("Fitting the reduced model", 0.6, None)
-    best = improved(np.clip(best.x, lows + 1e-9, highs - 1e-9), POLISH)
+    best = improve_fit(np.clip(best.x, lows + 1e-9, highs - 1e-9), POLISH)
     sole = replace(
         blank,
         constants=constants(best.x),

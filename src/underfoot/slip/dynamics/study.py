@@ -19,6 +19,7 @@ from underfoot.core import (
     silent,
 )
 from underfoot.core.arrays import Array
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.progress import part
 from underfoot.core.remark import Message
 from underfoot.friction import FrictionLaw, sampled_points
@@ -126,7 +127,7 @@ class SlipStudy:
             name: self._share(lambda study, name=name: study.outcomes(name)) for name in Outcome
         }
 
-    def slipped(self) -> tuple[float, float, float]:
+    def slip_share(self) -> tuple[float, float, float]:
         """Return the share of steps that slip, and its 95 % bounds.
 
         A step slips when the heel's peak speed after its first minimum exceeds 0.2 m/s (G.6.1,
@@ -134,6 +135,8 @@ class SlipStudy:
         has who does at the friction as computed.
         """
         return self._share(lambda study: study.of("slipped"))
+
+    slipped = renamed_member("slipped", "slip_share", gone="0.4")
 
     def outcomes(self, outcome: Outcome) -> Array:
         """Return 1 for each subject whose slip is of a class, else 0, (n,)."""
@@ -288,7 +291,7 @@ class SlipStudy:
         ):
             value = self.mean(name, unit, crossed=True)
             numbers[name], numbers[f"{name}_sd"] = value.value, value.uncertainty
-        share, low, high = self.slipped()
+        share, low, high = self.slip_share()
         numbers |= {"slipped": share, "slipped_low": low, "slipped_high": high}
         for name, (share, _, _) in self.shares().items():
             numbers[str(name).replace(" ", "_")] = share

@@ -202,22 +202,22 @@ class Population:
         """Return one person."""
         generator = np.random.default_rng([self.seed, index])
 
-        def drawn(spread: Spread) -> float:
+        def draw_value(spread: Spread) -> float:
             return float(spread.draw(1, generator)[0])
 
         return Walker(
             history=self.histories[int(generator.integers(len(self.histories)))],
-            mass=drawn(self.mass),
-            rcof=drawn(self.rcof),
-            walking_speed=drawn(self.walking_speed),
-            heel_speed=drawn(self.heel_speed),
-            shoe_angle=drawn(self.shoe_angle),
+            mass=draw_value(self.mass),
+            rcof=draw_value(self.rcof),
+            walking_speed=draw_value(self.walking_speed),
+            heel_speed=draw_value(self.heel_speed),
+            shoe_angle=draw_value(self.shoe_angle),
             landing=float(generator.uniform(*self.landing)),
-            lateral=drawn(self.lateral),
+            lateral=draw_value(self.lateral),
             effective_mass=self.effective_mass,
             recorded_angle=self.recorded_angle,
-            rcof_step=drawn(self.rcof_step),
-            brake_time=drawn(self.brake_time),
+            rcof_step=draw_value(self.rcof_step),
+            brake_time=draw_value(self.brake_time),
             heel_brake=self.heel_brake,
             weight_transfer=float(generator.uniform(*self.weight_transfer)),
             name=f"subject {index + 1}",

@@ -98,7 +98,7 @@ def pressure_pulse(
 
     flags: tuple[Flag, ...] = ()
 
-    def measured(
+    def measure_of(
         name: str, value: float | Message, unit: str, sd: float = 0.0, why: Message = NOTHING
     ) -> Measurement:
         if isinstance(value, Message):
@@ -108,8 +108,8 @@ def pressure_pulse(
         return Measurement(name, value, unit, sd, n=n, flags=flags, conventions=words)
 
     def without(reason: Message) -> Pulse:
-        peak = measured("peak pressure", reason, "Pa")
-        return Pulse(sensor, peak, measured("pressure duration", reason, "s"), math.nan, math.nan)
+        peak = measure_of("peak pressure", reason, "Pa")
+        return Pulse(sensor, peak, measure_of("pressure duration", reason, "s"), math.nan, math.nan)
 
     if channel.unit != "Pa":
         return without(
@@ -141,9 +141,9 @@ def pressure_pulse(
     known, top_time = float(over[top]), float(time[top])
     if not stretches:
         never = Message("never above the threshold of {limit:.0f} Pa", limit=limit)
-        none = measured("pressure duration", never, "s")
+        none = measure_of("pressure duration", never, "s")
         flags += (remark("within the noise: never above the threshold"),)
-        peak = measured("peak pressure", known, "Pa", deviation)
+        peak = measure_of("peak pressure", known, "Pa", deviation)
         return Pulse(sensor, peak, none, mean, deviation, top_time)
     first, last = stretches[0][0], stretches[-1][1] - 1
     if last == np.flatnonzero(inside)[-1]:
@@ -151,8 +151,8 @@ def pressure_pulse(
     begin, end = float(time[first]), float(time[last])
     step, why = 1.0 / channel.rate / math.sqrt(6.0), Message("time between samples")
     noise = Message("standard deviation of the baseline")
-    peak = measured("peak pressure", known, "Pa", deviation, noise)
-    duration = measured("pressure duration", float(time[last] - time[first]), "s", step, why)
+    peak = measure_of("peak pressure", known, "Pa", deviation, noise)
+    duration = measure_of("pressure duration", float(time[last] - time[first]), "s", step, why)
     return Pulse(sensor, peak, duration, mean, deviation, top_time, begin, end)
 
 

@@ -92,7 +92,7 @@ def _page(tiles: Sequence[Tile], sheet: TileSheet, head: str, legend: str) -> st
         colour = COLOURS.get(tile.verdict, "#444")
         frames.append(f"M{x:.0f} {y:.0f}h{size[0]:.0f}v{size[1]:.0f}h-{size[0]:.0f}z")
 
-        def placed(points: np.ndarray, corner: tuple[float, float] = (x, y)) -> np.ndarray:
+        def place_points(points: np.ndarray, corner: tuple[float, float] = (x, y)) -> np.ndarray:
             share = np.clip((points - low) / (high - low), 0, 1)
             return np.array(corner) + size * np.column_stack((share[:, 0], 1 - share[:, 1]))
 
@@ -100,10 +100,10 @@ def _page(tiles: Sequence[Tile], sheet: TileSheet, head: str, legend: str) -> st
         inside = np.isfinite(tile.y) & (tile.x >= low[0]) & (tile.x <= high[0])
         path = np.column_stack((tile.x, tile.y))[inside]
         if len(path):
-            path = placed(path[:: -(-len(path) // _POINTS)])
+            path = place_points(path[:: -(-len(path) // _POINTS)])
             parts.append(f'<path fill="none" stroke="{colour}" d="{_path(path)}"/>')
         marks = np.array(tile.marks, dtype=float).reshape(-1, 2)
-        for cx, cy in placed(marks[np.isfinite(marks).all(axis=1)]):
+        for cx, cy in place_points(marks[np.isfinite(marks).all(axis=1)]):
             parts.append(f'<circle cx="{cx:.1f}" cy="{cy:.1f}" r="1.8"/>')
         for line, reason in enumerate(textwrap.wrap(tile.reason, 34)[:4]):
             parts.append(_text(x + 3, y + 8 + 7 * line, reason, 'font-size="6"'))
@@ -119,7 +119,7 @@ def _page(tiles: Sequence[Tile], sheet: TileSheet, head: str, legend: str) -> st
                 middle = 'font-size="6" text-anchor="middle"'
                 parts.append(_text(at, y + size[1] + 8, f"{value:.3g} s", middle))
         if sheet.line is not None:
-            level = placed(np.column_stack(((low[0], high[0]), (sheet.line, sheet.line))))
+            level = place_points(np.column_stack(((low[0], high[0]), (sheet.line, sheet.line))))
             parts.append(f'<path stroke="#999" stroke-dasharray="3 2" d="{_path(level)}"/>')
     parts.append(f'<path fill="none" stroke="#ddd" d="{"".join(frames)}"/></svg>')
     return "".join(parts)

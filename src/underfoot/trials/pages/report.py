@@ -316,8 +316,8 @@ def page_table(table: TrialTable, *, limit: int = _LONG) -> dict[str, Any]:
     """Return a table as a page shows it: filled columns, texts, long text below its row, notes."""
     rows = table.rows[:limit]
     # Columns that say nothing in any row are noise on a page; the spreadsheet keeps them.
-    below = [i for i in table.filled() if table.heads[i].role is Role.LONG]
-    filled = [i for i in table.filled() if i not in below]
+    below = [i for i in table.filled_columns() if table.heads[i].role is Role.LONG]
+    filled = [i for i in table.filled_columns() if i not in below]
     notes = list(table.notes)
     if len(table.rows) > limit:
         notes.append(
@@ -395,7 +395,7 @@ def write_spreadsheet(tables: Sequence[TrialTable], methods: Sequence[str], path
 
     book = Workbook(write_only=True)  # cells go to the file at once: a tenth of the memory
 
-    def styled(sheet: Any, text: str, **style: Any) -> Any:
+    def style_cell(sheet: Any, text: str, **style: Any) -> Any:
         cell = WriteOnlyCell(sheet, text)
         for name, value in style.items():
             setattr(cell, name, value)
@@ -405,7 +405,7 @@ def write_spreadsheet(tables: Sequence[TrialTable], methods: Sequence[str], path
     first.column_dimensions["A"].width = 110
     wrapped = Alignment(wrap_text=True, vertical="top")
     for text in methods:
-        first.append([styled(first, _safe(text), alignment=wrapped)])
+        first.append([style_cell(first, _safe(text), alignment=wrapped)])
     used = {"methods"}
     for table in tables:
         sheet = book.create_sheet(_sheet_name(table.name, used))
@@ -413,9 +413,9 @@ def write_spreadsheet(tables: Sequence[TrialTable], methods: Sequence[str], path
         for i, name in enumerate(table.columns, start=1):
             longest = max([len(name), *(len(_cell(row[i - 1])) for row in table.rows[:200])])
             sheet.column_dimensions[get_column_letter(i)].width = min(longest + 2, _WIDEST)
-        sheet.append([styled(sheet, table.title, font=Font(bold=True, size=13))])
+        sheet.append([style_cell(sheet, table.title, font=Font(bold=True, size=13))])
         bold = Font(bold=True)
-        sheet.append([styled(sheet, _safe(name), font=bold) for name in table.columns])
+        sheet.append([style_cell(sheet, _safe(name), font=bold) for name in table.columns])
         for row in table.rows:
             sheet.append([_number_or_text(value) for value in row])
         for note in table.notes:

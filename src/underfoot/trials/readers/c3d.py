@@ -55,7 +55,7 @@ class C3DFile:
         value = self.parameters.get(group, {}).get(name)
         return value if isinstance(value, np.ndarray) else np.empty(0)
 
-    def continued(self, group: str, name: str) -> np.ndarray:
+    def parameter_numbers(self, group: str, name: str) -> np.ndarray:
         """Return a parameter of numbers with its continuations (TIMES, TIMES2 ...)."""
         parts = [self.numbers(group, name)]
         for number in range(2, 20):
@@ -298,11 +298,11 @@ def _scaled_analog(raw: np.ndarray, shell: C3DFile, real: bool) -> np.ndarray:
     unsigned = any(text.strip().upper() == "UNSIGNED" for text in shell.texts("ANALOG", "FORMAT"))
     if unsigned and not real:
         raw = raw.view(raw.dtype.str.replace("i", "u"))
-    offset = shell.continued("ANALOG", "OFFSET").ravel(order="F")
+    offset = shell.parameter_numbers("ANALOG", "OFFSET").ravel(order="F")
     if unsigned:
         offset = np.where(offset < 0, offset + 65536, offset)
     general = shell.number("ANALOG", "GEN_SCALE", 1.0)
-    scale = shell.continued("ANALOG", "SCALE").ravel(order="F")
+    scale = shell.parameter_numbers("ANALOG", "SCALE").ravel(order="F")
     samples = (raw - _pad(offset, n, 0.0)) * (_pad(scale, n, 1.0) * general)
     return np.where(np.abs(samples) < _POSSIBLE, samples, np.nan)
 
@@ -653,7 +653,7 @@ def _of_plate(
 
 
 def _events(raw: C3DFile) -> tuple[Event, ...]:
-    times = raw.continued("EVENT", "TIMES")
+    times = raw.parameter_numbers("EVENT", "TIMES")
     if times.ndim == 1 and times.size == 2:
         times = times[:, None]
     if times.ndim != 2 or times.shape[0] != 2:

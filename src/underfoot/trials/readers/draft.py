@@ -280,7 +280,7 @@ class RecordingDraft:
                 )
             )
             markers = {
-                name: Marker(clock.seen(one.positions), rate, start)
+                name: Marker(clock.blank_unseen(one.positions), rate, start)
                 for name, one in markers.items()
             }
         seen: dict[str, list[Message]] = {}

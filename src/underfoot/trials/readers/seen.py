@@ -45,7 +45,7 @@ class CameraClock:
     first: float
     """Row at which frame 0 came; before the file where its first rows hold an older frame."""
 
-    def seen(self, positions: np.ndarray) -> np.ndarray:
+    def blank_unseen(self, positions: np.ndarray) -> np.ndarray:
         """Return positions (frames, 3), NaN in frames that never came."""
         path = np.full((int(self.frames[-1]) + 1, 3), np.nan)
         path[self.frames] = positions[self.rows]

@@ -108,7 +108,7 @@ class _Weights:
         self.ways = np.add.reduceat(ways, np.flatnonzero(first))
 
     @classmethod
-    def joined(cls, parts: Sequence[tuple[np.ndarray, np.ndarray]]) -> Self:
+    def join_parts(cls, parts: Sequence[tuple[np.ndarray, np.ndarray]]) -> Self:
         return cls(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
 
@@ -152,7 +152,7 @@ class _Enumeration:
                 added = self.log_factorial[cells].sum(axis=1)
                 for left, weight in zip((np.array(rest) - cells).tolist(), added, strict=True):
                     grown.setdefault(tuple(left), []).append((before.logs - weight, before.ways))
-            states = {key: _Weights.joined(parts) for key, parts in grown.items()}
+            states = {key: _Weights.join_parts(parts) for key, parts in grown.items()}
         return states
 
     def completions(self, rest: tuple[int, ...], columns: tuple[int, ...]) -> _Weights:
@@ -175,7 +175,7 @@ class _Enumeration:
                 later = self.completions(tuple(row), columns[1:])
                 self._spend(len(later.logs) + _STEP)
                 parts.append((log + later.logs, later.ways))
-            weights = _Weights.joined(parts)
+            weights = _Weights.join_parts(parts)
         self.known[key] = weights
         return weights
 

@@ -161,21 +161,21 @@ def _of_many(columns: Sequence[np.ndarray], several: bool) -> RankTest:
     statistic = float(stats.kruskal(*columns).statistic)
     twice = np.rint(2.0 * stats.rankdata(everyone)).astype(int)
 
-    def spread(sums: np.ndarray) -> np.ndarray:
+    def spread_of(sums: np.ndarray) -> np.ndarray:
         return np.sum(sums**2 / np.array(sizes), axis=-1)
 
     ends = np.cumsum(sizes)[:-1]
-    observed = float(spread(np.array([part.sum() for part in np.split(twice, ends)], float)))
+    observed = float(spread_of(np.array([part.sum() for part in np.split(twice, ends)], float)))
     least = observed * (1.0 - 1e-12)
     count = factorial(len(twice)) // prod(map(factorial, sizes))
     name = "Kruskal-Wallis H"
     if count <= _ORDERS:
         sums = _all_sums(tuple(sorted(twice.tolist())), tuple(sizes))
-        far = float(np.mean(spread(sums) >= least))
+        far = float(np.mean(spread_of(sums) >= least))
         return RankTest(name, statistic, far, 0)
     draws = np.random.default_rng(0).permuted(np.tile(twice, (_ORDERS, 1)), axis=1)
     sums = np.add.reduceat(draws, [0, *ends.tolist()], axis=1)
-    far = (float(np.sum(spread(sums) >= least)) + 1.0) / (_ORDERS + 1.0)
+    far = (float(np.sum(spread_of(sums) >= least)) + 1.0) / (_ORDERS + 1.0)
     return RankTest(name, statistic, far, 0, "drawn", float(np.sqrt(far * (1.0 - far) / _ORDERS)))
 
 

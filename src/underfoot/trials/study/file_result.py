@@ -234,7 +234,7 @@ class FileResultDraft:
                 out[key] = values
         self.curves.setdefault(name, []).append(out)
 
-    def finished(self, protocol: Protocol) -> FileResult:
+    def finish_result(self, protocol: Protocol) -> FileResult:
         """Check the rules and return the result with its verdict."""
         kinds = list(subjects([*self.refusals, *self.cautions]))
         facts = _values(self.numbers, "fact")

@@ -257,7 +257,7 @@ def _analyse_file(
                     error=str(error),
                 )
             )
-        results.append(replace(draft.finished(protocol), run=number))
+        results.append(replace(draft.finish_result(protocol), run=number))
     return results
 
 

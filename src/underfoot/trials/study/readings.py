@@ -263,7 +263,7 @@ def _table_results(
             on_boards = boards.read.get(conditions.get("operator", ""), ())
             draft.sample = replace(draft.sample, boards=on_boards)
         draft.sample = replace(draft.sample, source=name)
-        results.append(draft.finished(protocol))
+        results.append(draft.finish_result(protocol))
     return results
 
 

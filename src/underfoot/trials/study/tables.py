@@ -102,14 +102,14 @@ class TrialTable:
             for head in self.heads
         )
 
-    def filled(self) -> list[int]:
+    def filled_columns(self) -> list[int]:
         """Return the numbers of the columns with content."""
         cells = range(len(self.heads))
         return [i for i in cells if any(row[i] not in (None, "") for row in self.rows)]
 
     def without_empty(self) -> Self:
         """Return the table without the columns that have no content and need not stand."""
-        filled = self.filled()
+        filled = self.filled_columns()
         return self.only([i for i, h in enumerate(self.heads) if h.always or i in filled])
 
     def only(self, keep: Collection[int]) -> Self:

@@ -235,19 +235,21 @@ def stances(walk: Walkway, *, threshold: float = CONTACT_FORCE) -> list[Stance]:
             detected.append(Stance(plate.name, *span, contact.peak, direction=way))
     detected.sort(key=lambda stance: stance.contact)
 
-    def located(stance: Stance) -> Stance:
+    def locate_stance(stance: Stance) -> Stance:
         if "side" in stance.by_hand:
             return replace(stance, heel=walk.heels.get(stance.side, ""))
         side, heel = feet[stance.plate].foot(stance)
         return replace(stance, side=side, heel=heel)
 
-    detected = [located(replace(stance, number=i)) for i, stance in enumerate(detected, start=1)]
+    detected = [
+        locate_stance(replace(stance, number=i)) for i, stance in enumerate(detected, start=1)
+    ]
     if trial.edits:
         detected = edited_contacts(detected, trial.edits, plates, up)
         for i, stance in enumerate(detected):
             if stance.by_hand and not stance.reason:
                 way = walk.direction(plates[stance.plate], stance.start, stance.stop)
-                detected[i] = located(replace(stance, direction=way))
+                detected[i] = locate_stance(replace(stance, direction=way))
     usual = float(np.median([s.peak for s in detected])) if detected else 0.0
     # One that the record cuts began at a time nobody knows.
     begun = [s for s in detected if not s.reason and (s.start or "contact" in s.by_hand)]

@@ -53,7 +53,7 @@ class Reference:
         """
         from scipy.special import stdtr
 
-        t = abs(value - self.mean) / self._spread(speed)
+        t = abs(value - self.mean) / self._deviation(speed)
         return float(2.0 * stdtr(self.steps - 1, -t))
 
     def limit(self, value: float, speed: float | None = None) -> float:
@@ -61,13 +61,13 @@ class Reference:
         from scipy.special import stdtrit
 
         t = float(stdtrit(self.steps - 1, 1.0 - 0.5 * UNLIKELY))
-        return self.mean + math.copysign(t * self._spread(speed), value - self.mean)
+        return self.mean + math.copysign(t * self._deviation(speed), value - self.mean)
 
-    def _spread(self, speed: float | None) -> float:
+    def _deviation(self, speed: float | None) -> float:
         beyond = 0.0 if speed is None else max(self.slowest - speed, speed - self.fastest, 0.0)
         return self.sd * math.sqrt(1.0 + (1.0 + (beyond / self.speed_sd) ** 2) / self.persons)
 
-    def shown(self, value: float) -> float:
+    def displayed_value(self, value: float) -> float:
         """Return a value of the feature as people read it."""
         return math.exp(value) if self.logarithm else value
 
@@ -111,13 +111,22 @@ def unlikely_flags(
             text = Message(
                 "{feature} {value:.3g}, where sound steps have {usual:.3g}: as far out lies {rare}",
                 feature=law.feature,
-                value=law.shown(value),
-                usual=law.shown(law.mean),
+                value=law.displayed_value(value),
+                usual=law.displayed_value(law.mean),
                 rare=rare,
             )
-            limit = law.shown(law.limit(value, speed))
+            limit = law.displayed_value(law.limit(value, speed))
             flags.append(
-                Flag(law.feature, text, True, law.shown(value), limit, "", law.source, likelihood)
+                Flag(
+                    law.feature,
+                    text,
+                    True,
+                    law.displayed_value(value),
+                    limit,
+                    "",
+                    law.source,
+                    likelihood,
+                )
             )
     for need, (what, missed) in _NEEDS.items():
         if not any(
@@ -147,8 +156,8 @@ def impossible(
                 reference.feature,
                 "{value:.3g} is impossible (sound steps {usual:.3g}): gain, unit or axes of the "
                 "forces?",
-                value=reference.shown(value),
-                usual=reference.shown(reference.mean),
+                value=reference.displayed_value(value),
+                usual=reference.displayed_value(reference.mean),
             )
     return NOTHING
 
