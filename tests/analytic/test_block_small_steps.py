@@ -284,3 +284,16 @@ def test_layers_grow_by_at_most_two_from_one_to_the_next(ratio, fits):
         return
     layers = np.diff(layer_heights(block))
     assert layers[1:] / layers[:-1] == pytest.approx([ratio] * 3)
+
+
+@pytest.mark.parametrize("count", [0, 2])
+def test_the_state_of_a_march_has_a_row_for_each_step_that_was_written(count, tmp_path):
+    nodes = np.ones((2, 3)), np.zeros((2, 3)), None
+    assembly = SimpleNamespace(
+        nodes=nodes, history=np.zeros(4), state=np.zeros(64), control=np.zeros(3)
+    )
+    march = BlockMarch(
+        cast(Any, assembly), cast(Any, None), 1.0, WAVE, 20, 1e6, "key", silent,
+        output=tmp_path, rows=[np.arange(float(len(COLUMNS)))] * count,
+    )  # fmt: skip
+    assert march.state()["rows"].shape == (count, len(COLUMNS))

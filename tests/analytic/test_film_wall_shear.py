@@ -49,6 +49,8 @@ def test_ruptured_and_open_film():
         ({"gap": np.zeros((6, 4))}, "gap"),
         ({"gap": np.ones((6, 3))}, "gap"),
         ({"pressure": np.full((6, 4), np.nan)}, "pressure, fraction or speed"),
+        ({"pressure": np.where(np.eye(6, 4) > 0, np.inf, 0.0)}, "pressure, fraction or speed"),
+        ({"pressure": np.where(np.eye(6, 4) > 0, np.nan, 0.0)}, "pressure, fraction or speed"),
         ({"viscosity": 0.0}, "viscosity"),
         ({"spacing": math.inf}, "spacing"),
     ],

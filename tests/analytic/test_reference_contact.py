@@ -169,3 +169,16 @@ def test_refusals(call, match):
 def test_one_pressure_below_zero_among_others_is_refused():
     with pytest.raises(ValueError, match="pressure must be zero or positive"):
         reference.sinusoid_contact_fraction([1e3, -1.0], 1e5)
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.49, 0.5])
+@pytest.mark.parametrize("q", [1.001e-3, 1.5e-3, 1.99e-3, 0.1])
+def test_a_bonded_layer_is_bentalls_from_a_thousandth_on(nu, q):
+    """The sum in the numerator, free of what cancels: a sinh 2q - 2q, by its series."""
+    a, thickness, modulus = 3 - 4 * nu, 0.01, 5e6
+    sinh = sum((2 * q) ** n / math.factorial(n) for n in range(3, 25, 2))
+    over = (a - 1) * 2 * q + a * sinh
+    under = a * math.cosh(2 * q) + 2 * q**2 + 5 - 12 * nu + 8 * nu**2
+    exact = 2 * (1 - nu**2) * thickness / (modulus * q) * over / under
+    found = bonded_layer_compliance(q / thickness, thickness, modulus, nu)
+    assert float(found) == pytest.approx(exact, rel=1e-6)

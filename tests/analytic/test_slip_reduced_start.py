@@ -54,3 +54,15 @@ def test_a_fit_begins_inside_its_bounds_and_only_what_has_a_sign_may_turn_it():
 def test_each_constant_of_the_reduced_model_has_a_place_of_its_own():
     places = [getattr(kernel, name.removesuffix("_film").upper()) for name in NAMES]
     assert places == list(range(kernel.COUNT))
+
+
+@pytest.mark.parametrize("power", [1.0, 2.0, 4.0])
+def test_the_decay_is_told_where_the_asperities_bear_a_third_of_a_megapascal(power):
+    """p = 3e5 Pa (20 um / h)^n: twice the gap over n at h = 20 um, more or less elsewhere."""
+
+    def pressure(gap):
+        return np.where(gap < 3e-4, 3e5 * (20e-6 / gap) ** power, 0.0)  # no contact far away
+
+    law = SimpleNamespace(pressure=pressure, stiffness=lambda gap: power * pressure(gap) / gap)
+    found = _gap_decay(cast(Any, SimpleNamespace(asperities=law)))
+    assert found == pytest.approx(2 * 20e-6 / power, rel=0.03)

@@ -215,3 +215,13 @@ def test_a_compliant_instrument_needs_fluid_speed_and_inlet(missing):
     settings = {"inlet_diameter": 4 * MM, "viscosity": 0.2, "speed": 0.7} | {missing: 0.0}
     with pytest.raises(InputError, match=missing):
         floor_sensor_reading(x, y, np.ones_like(xx), xx, compliance=1e-16, **settings)
+
+
+@pytest.mark.parametrize("turned", ["x", "y", "both"])
+def test_cell_centres_are_two_rows(turned):
+    x, y, (xx, _) = grid(20, 20, 1.0)
+    along, across = (
+        row[:, None] if turned in (name, "both") else row for name, row in (("x", x), ("y", y))
+    )
+    with pytest.raises(InputError, match="at least 2 cell centres"):
+        floor_sensor_reading(along, across, np.zeros_like(xx), np.ones_like(xx))

@@ -294,6 +294,11 @@ def test_composite_adds_heights_and_says_what_it_can_not_tell():
     both = composite_surface(floor, shoe)
     np.testing.assert_array_equal(both.heights, floor.heights + shoe.heights)
     assert both.resolution == 48e-6
+    coarser = replace(shoe, resolution=90e-6)
+    for pair in ((floor, coarser), (coarser, floor)):
+        assert composite_surface(*pair).resolution == 90e-6
+    unknown = replace(shoe, resolution=None)
+    assert composite_surface(floor, unknown).resolution == 48e-6
     assert "hysteresis" in both.processing[-1]
     assert both.periodic
     with pytest.raises(InputError, match="one shape"):

@@ -1,5 +1,6 @@
 """What is unsure of a contact table, and a pair's law that is built of one."""
 
+import dataclasses
 import math
 from types import SimpleNamespace
 from typing import Any
@@ -11,6 +12,7 @@ from scipy.special import erfinv
 from underfoot.case import Case
 from underfoot.case.friction import SHORTEST_WAVE_DEVIATION, contact_deviation
 from underfoot.compute.resolve import resolve_context
+from underfoot.core import RangeError
 from underfoot.friction.pair_contact import CONTACT_PRESSURE
 from underfoot.rough_contact import ContactTable
 from underfoot.rough_contact.contact_table import QUANTITIES
@@ -76,3 +78,24 @@ def test_a_table_loses_where_any_of_its_nodes_does(tmp_path):
 def test_a_whole_contact_is_bounded(tmp_path):
     pair, _ = pair_of(tmp_path, table(area=1.0))
     assert pair.full_contact == pytest.approx(CONTACT_PRESSURE / erfinv(1 - 1e-9))
+
+
+@pytest.mark.parametrize(("falling", "enough"), [(3, True), (2, False)])
+def test_a_law_of_a_table_needs_three_pressures_with_an_open_gap(falling, enough):
+    """Each node of the finer grid below the one before by more than a millionth of the first."""
+    gap = np.full(4, 1e-6)
+    made = table()
+    fine = 1e-6 * (1 - 0.1 * np.arange(100))
+    drop = dataclasses.replace(made, values={**made.values, "mean_gap": gap[:, None]})
+    seen = fine[:falling].tolist()
+
+    def mean_gap(self, pressure, speed, outside):
+        return np.array([*seen, *[seen[-1]] * (len(pressure) - len(seen))])
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ContactTable, "mean_gap", mean_gap)
+        if enough:
+            assert drop.law(0.3).gap.size == 3
+        else:
+            with pytest.raises(RangeError, match="only 2 pressures"):
+                drop.law(0.3)

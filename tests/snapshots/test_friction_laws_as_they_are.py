@@ -248,6 +248,8 @@ def test_measured_fluids(file_regression):
         "pairs": refusal(boundary_friction_at, 0.01, (THIN, replace(THICK, pair="c"))),
         "none": refusal(boundary_friction_at, 0.01,
                         (THIN, replace(THICK, cof_boundary=number(None, reason="none")))),
+        "none first": refusal(boundary_friction_at, 0.01,
+                              (replace(THIN, cof_boundary=number(None, reason="none")), THICK)),
         "negative": refusal(boundary_friction_at, 0.0, FLUIDS),
         "bound": refusal(friction_left, (replace(MIDDLE, cof_asymptote=number(0.0099)), NO_FIT)),
         "few": refusal(viscous_decay, (THIN, NO_FIT)),

@@ -11,6 +11,7 @@ from snapshot import held, refusal, tried
 from underfoot.case import Case
 from underfoot.compute.resolve import resolve_context
 from underfoot.core import SourcedValue
+from underfoot.film.tapered_wedge import side_leakage, wedge_load_factor
 from underfoot.friction.pair_contact import Pair, UnexpectedReading
 from underfoot.places import calibration, cells, choice, evidence, joint, machines, place
 from underfoot.places.calibration import FloorReading
@@ -530,3 +531,9 @@ def test_small_readings(file_regression):
 def test_angles_of_ramps_are_degrees_to_the_machine(name):
     (reading,) = _case(friction={"model": "pair_read", name: "12 deg"}).friction.floor_readings()
     assert reading.value == pytest.approx(12.0)
+
+
+@pytest.mark.parametrize(("taper", "ratio"), [(0.5, 0.3), (1.2, 1.0), (2.0, 2.0)])
+def test_a_wedge_bears_its_share_of_the_wide_one(taper, ratio):
+    found = machines._wedge_factors(np.array([taper]), np.array([ratio]))
+    assert found == pytest.approx(wedge_load_factor(taper) * side_leakage(ratio, taper), abs=1e-3)

@@ -321,6 +321,7 @@ def test_surfaces_and_flow(file_regression):
     }  # fmt: skip
     cut = cutoff_dependence(texture(), soft, 0.3, 3e5, [3.2e-5, 1.6e-5, 8e-6])
     said["cut"] = cut, cut.area_exponent, cut.note
+    assert cutoff_dependence(texture(), soft, 0.3, 3e5, [8e-6, 2 * SPACING]).status is not None
     open_map = HeightMap(heights((16, 16)), SPACING)
     said["refused"] = [
         refusal(composite_surface, floor, HeightMap(heights(), SPACING, periodic=True)),

@@ -15,6 +15,7 @@ import typer
 
 from underfoot.cli.output import finish
 from underfoot.core import InputError, SourcedValue
+from underfoot.core.page import PageSection
 from underfoot.core.presentation import (
     Part,
     Presentable,
@@ -23,7 +24,7 @@ from underfoot.core.presentation import (
     quantity_text,
     value_text,
 )
-from underfoot.report import figures, plot, write_report
+from underfoot.report import dispatch, figures, plot, write_report
 from underfoot.report.writing import (
     WRITTEN_IN_PART,
     data_text,
@@ -249,3 +250,13 @@ def test_data_of_a_command_is_json_for_every_program():
     assert json.loads(told, parse_constant=pytest.fail) == {
         "a": None, "b": [None, 0.5], "straße": [None, "x"], "1": None,
     }  # fmt: skip
+
+
+def test_sections_of_another_package_get_the_object_and_its_pictures(monkeypatch):
+    def made(shown, pictures):
+        return [PageSection(shown)], "".join(pictures)
+
+    monkeypatch.setattr(dispatch, "_registered_function", lambda *_: made)
+    parts, script = dispatch.sections("an answer", {"a": b"1", "b": b"2"})
+    assert [part.title for part in parts] == ["an answer"]
+    assert script == "ab"

@@ -9,7 +9,8 @@ import pytest
 
 from slip_floors import slippery_sole
 from underfoot.core import InputError, Status
-from underfoot.slip.dynamics import FloorSensors, Population, Spread
+from underfoot.core.cache import Cache
+from underfoot.slip.dynamics import FloorSensors, Population, Spread, full_model
 from underfoot.slip.dynamics import study as module
 from underfoot.slip.dynamics.full_model import FullRun, pressed_area
 from underfoot.slip.dynamics.reduced_model import at_bounds
@@ -133,3 +134,37 @@ def test_a_constant_that_a_fit_drives_to_its_bound_is_stuck():
     lows, highs = np.array([0.0, 0.0, 0.0, -1.0]), np.array([10.0, 10.0, 10.0, 1.0])
     stuck = at_bounds(np.array([0.001, 5.0, 9.995, 0.0]), lows, highs)
     assert stuck.tolist() == [True, False, True, False]
+
+
+def test_a_slip_that_was_done_is_read_back_where_its_setting_has_a_key(tmp_path, monkeypatch):
+    """By the key of the setting: without one nobody knows what it was of."""
+    made = []
+
+    def compute(setting, walker, *_):
+        made.append(walker)
+        return full_run(walker)
+
+    monkeypatch.setattr(full_model, "_compute_run", compute)
+    walker, cache = Population(subjects=1, seed=3).walker(0), Cache("slips", tmp_path)
+    for key, times in (("of a case", 1), ("", 3)):
+        setting = cast(Any, SimpleNamespace(key=key))
+        runs = [full_model.full_run(setting, walker, cache=cache) for _ in range(3)]
+        assert len(made) == times
+        assert [one.motion.peak_speed for one in runs] == [runs[0].motion.peak_speed] * 3
+        made.clear()
+
+
+def test_slips_are_counted_from_one_as_they_go_on(monkeypatch):
+    told = []
+
+    def run(setting, walker, *, progress, **_):
+        progress("under way", 0.5)
+        return walker
+
+    monkeypatch.setattr(full_model, "full_run", run)
+
+    def heard(stage, fraction, residual=None):
+        told.append((str(stage), fraction))
+
+    full_model.full_runs(cast(Any, None), cast(Any, ["a", "b"]), progress=heard)
+    assert told == [("Slip 1 of 2", 0.25), ("Slip 2 of 2", 0.75)]

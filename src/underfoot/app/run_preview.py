@@ -46,7 +46,7 @@ def preview_of_run(
     if worn or (changes and not has_lugs(case)):
         raise InputError(
             "wear has no preview" if worn else "a sole without lugs has no preview",
-            where="continue_march",
+            where="preview",
             remedy="Run the changed case",
         )
     solved = kept_continuation(case, progress=progress)
@@ -95,7 +95,7 @@ def of_run(solved: Continuation, seen: Preview, whole: Mapping[str, SourcedValue
                 film=values["fluid_load"],
                 film_spread=errors["fluid_load"],
             ),
-            where="continue_march",
+            where="preview",
             remedy="Run the changed case",
         )
     share = values["cof"] / seen.values["cof"] if seen.values["cof"] else 1.0
