@@ -289,6 +289,22 @@ def test_maps_with_edges_are_refused(tmp_path):
         composite_surface(cut, cut)
 
 
+def test_maps_of_oblong_cells_are_refused(tmp_path):
+    """A solver takes one spacing: cells of 8 by 10 um were taken for squares of 8."""
+    floor, shoe = surfaces(2)
+    oblong = replace(floor, spacing_y=10e-6)
+    given = {"pressure": PRESSURE, "speed": SPEED, "cache": Cache("t", tmp_path)}
+    for call in (
+        lambda: ContactTable.from_surfaces([oblong], 5e6, **given),
+        lambda: ContactTable.from_surfaces([floor], 5e6, shoe_surfaces=[oblong], **given),
+        lambda: cutoff_dependence(oblong, 5e6, 0.0, 1e5, [96e-6, 48e-6]),
+        lambda: composite_surface(oblong, shoe),
+        lambda: composite_surface(shoe, oblong),
+    ):
+        with pytest.raises(InputError, match=r"by 10 .m\. Allowed: square cells"):
+            call()
+
+
 def test_composite_adds_heights_and_says_what_it_can_not_tell():
     floor, shoe = surfaces(2)
     both = composite_surface(floor, shoe)
@@ -301,6 +317,9 @@ def test_composite_adds_heights_and_says_what_it_can_not_tell():
     assert composite_surface(floor, unknown).resolution == 48e-6
     assert "hysteresis" in both.processing[-1]
     assert both.periodic
+    fine = replace(floor, spacing=12e-9), replace(shoe, spacing=18e-9)  # of an AFM
+    with pytest.raises(InputError, match="one shape"):
+        composite_surface(*fine)
     with pytest.raises(InputError, match="one shape"):
         composite_surface(floor, self_affine(32, 8e-6, 4e-6, 0.8, 256e-6, 48e-6, seed=0))
 

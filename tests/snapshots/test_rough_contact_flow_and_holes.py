@@ -203,13 +203,13 @@ def test_nodes_and_surfaces_that_make_no_table():
     assert _nodes("speed", 3.0, 1).tolist() == [3.0]
     for bad in ([1.0], [2.0, 1.0], [1.0, 1.0], [0.0, 1.0], [1.0, np.inf], [[1.0, 2.0]]):
         assert "2 or more rising values" in refusal(_nodes, "pressure", bad, 2)
-    surface: Any = SimpleNamespace(periodic=True)
+    surface: Any = SimpleNamespace(periodic=True, spacings=(1e-6, 1e-6))
     assert _pairs([surface], None) == [(surface, None)]
     assert _pairs([surface] * 2, [surface] * 2) == [(surface, surface)] * 2
     assert "2 shoe surfaces for 1 floors" in refusal(_pairs, [surface], [surface] * 2)
     assert "no surface" in refusal(_check_surfaces, [])
     other: Any = SimpleNamespace(periodic=False)
-    assert "surface 2 is not periodic" in refusal(_check_surfaces, [surface, other])
+    assert "surfaces[1]: the surface is not periodic" in refusal(_check_surfaces, [surface, other])
 
 
 def test_the_error_of_a_table_is_that_at_the_nodes_that_are_left_out():

@@ -62,7 +62,7 @@ class MicroSurface:
                 raise InputError(
                     "the height map is not periodic",
                     where="MicroSurface.height_map",
-                    remedy="Make it periodic with underfoot.surface.periodised",
+                    remedy="Make it periodic with underfoot.surface.make_periodic",
                 )
 
     @classmethod

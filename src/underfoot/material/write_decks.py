@@ -66,7 +66,7 @@ def deck_text(
             allowed=Message(
                 "at most {most} in a material of {form}", most=MOST_TERMS[form], form=form
             ),
-            remedy="Give fewer terms (underfoot.material.reduced)",
+            remedy="Give fewer terms (underfoot.material.reduce_spectrum)",
         )
     if form == "FEBio" and rest <= LEAST_AT_REST * at_once:
         raise InputError(

@@ -1,11 +1,13 @@
 """Two rough surfaces as one: the composite surface and what it can't say."""
 
+import math
+
 import numpy as np
 
 from underfoot.core import InputError
 from underfoot.surface import HeightMap
 
-from .sliding_input import Modulus, modulus_function
+from .sliding_input import Modulus, check_map, modulus_function
 
 PLAIN = (
     "composite of two surfaces, exact for elastic bodies at each moment. In a viscoelastic shoe it "
@@ -34,19 +36,17 @@ def composite_surface(
     Both maps are periodic, of one shape and spacing, each positive away from its own solid.
 
     Raises:
-        InputError: Different shape or spacing, or a map that is not periodic.
+        InputError: Different shape or spacing, or a map that is not periodic or has oblong cells.
     """
-    if floor.shape != shoe.shape or not np.isclose(floor.spacing, shoe.spacing, rtol=1e-9):
+    if floor.shape != shoe.shape or not math.isclose(floor.spacing, shoe.spacing):
         raise InputError(
             f"floor {floor.shape} at {floor.spacing:g} m, shoe {shoe.shape} at {shoe.spacing:g} m",
             where="composite surface",
             allowed="two maps of one shape and spacing",
             remedy="Resample one of them, or generate both from their spectra on one grid",
         )
-    if not (floor.periodic and shoe.periodic):
-        raise InputError(
-            "a map is not periodic", where="composite surface", allowed="two periodic maps"
-        )
+    check_map(floor, "floor")
+    check_map(shoe, "shoe")
     known = [s.resolution for s in (floor, shoe) if s.resolution is not None]
     resting = modulus is not None and speed != 0.0
     added = _resting(shoe, modulus, speed) if modulus is not None and resting else shoe.heights

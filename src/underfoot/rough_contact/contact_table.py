@@ -27,7 +27,7 @@ from ._kernels.monotone import interpolated_grid
 from .composite import RESTING, composite_surface
 from .flow_factor import flow_factors
 from .pressure_gap_law import TabulatedLaw
-from .sliding_input import Modulus, modulus_function, slow_transform
+from .sliding_input import Modulus, check_map, modulus_function, slow_transform
 from .steady import SteadySliding, contacts_on_card, steady_sliding
 
 QUANTITIES = {
@@ -120,8 +120,8 @@ class ContactTable(Presentable):
                 the cache.
 
         Raises:
-            InputError: No surface, not periodic, nodes not rising, modulus that can't be sent to a
-                process, no such device.
+            InputError: No surface, not periodic, oblong cells, nodes not rising, modulus that can't
+                be sent to a process, no such device.
             ConvergenceError: A node where no surface converged.
         """
         p, v = _nodes("pressure", pressure, 4), _nodes("speed", speed, 1)
@@ -678,13 +678,7 @@ def _check_surfaces(surfaces: Sequence[Any]) -> None:
     if len(surfaces) == 0:
         raise core.InputError("no surface", where="surfaces", allowed="one height map or more")
     for n, surface in enumerate(surfaces):
-        if not surface.periodic:
-            raise core.InputError(
-                f"surface {n + 1} is not periodic",
-                where="surfaces",
-                remedy="Make it periodic first (taper or mirror its edges), or generate surfaces "
-                "from its spectrum",
-            )
+        check_map(surface, f"surfaces[{n}]")
 
 
 def leave_out_errors(table: ContactTable, axis: str = "pressure") -> dict[str, float]:

@@ -9,7 +9,7 @@ from underfoot.core import InputError, Progress, Status, silent
 from underfoot.core.status import worst
 from underfoot.surface import HeightMap
 
-from .sliding_input import Modulus
+from .sliding_input import Modulus, check_map
 from .steady import steady_sliding
 
 
@@ -77,8 +77,7 @@ def cutoff_dependence(
             where="shortest_waves",
             allowed=f"2 or more falling lengths down to {2.0 * surface.spacing:.4g} m",
         )
-    if not surface.periodic:
-        raise InputError("the surface is not periodic", where="surface")
+    check_map(surface, "surface")
     q = np.hypot(
         *np.meshgrid(
             *(2.0 * np.pi * np.fft.fftfreq(n, surface.spacing) for n in surface.shape),

@@ -13,8 +13,9 @@ from underfoot.core.arrays import AnyArray
 from underfoot.core.checks import host_array, positive
 from underfoot.core.checks import poisson_ratio as check_poisson_ratio
 from underfoot.core.device import free_memory
-from underfoot.core.remark import Message
+from underfoot.core.remark import Amount, Message
 from underfoot.core.threads import namespace
+from underfoot.surface import HeightMap
 
 
 class HasComplexModulus(Protocol):
@@ -45,6 +46,27 @@ _NEGLIGIBLE_LOSS_TANGENT = 1e-3
 _SMALL = 128 * 128
 """Points below which a contact takes a few hundredths of a second on a grid of any size."""
 _HALVED = 16
+
+
+def check_map(surface: HeightMap, where: str) -> None:
+    """Refuse a map that a contact on a periodic grid of one spacing can't take."""
+    if not surface.periodic:
+        raise InputError(
+            "the surface is not periodic",
+            where=where,
+            remedy="Make it periodic first (underfoot.surface.make_periodic), or generate surfaces "
+            "from its spectrum",
+        )
+    along, across = surface.spacings
+    if along != across:
+        raise InputError(
+            Message(
+                "cells of {along} by {across}", along=Amount(along, "m"), across=Amount(across, "m")
+            ),
+            where=where,
+            allowed="square cells",
+            remedy="Divide them first (underfoot.surface.square_cells)",
+        )
 
 
 def checked_contact_input(

@@ -4,7 +4,7 @@ Unknowns: the total pressure p of each cell of the wet region and the approach d
 fraction theta of cavitated cells follows from them by their own mass balance.
 
     h = G - d + C p,   p_f = p - P(h)
-    full cell:       R(p_f, theta, h) = 0,  theta = 1       R: ``underfoot.film.FaceOperator``
+    full cell:       R(p_f, theta, h) = 0,  theta = 1       R: ``film.face_operator.FaceOperator``
     cavitated cell:  p_f = p_cavity,  R(p_f, theta, h) = 0
     dry cell:        p_f = 0
     load:            sum p dA = F
