@@ -7,8 +7,10 @@ import shutil
 import signal
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import settings
 
@@ -29,6 +31,23 @@ settings.load_profile("ci")
 # started in the background of a shell, the programs of the tests would ignore Ctrl-C
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+APPROX = pytest.approx
+
+
+def approx(expected, rel=None, abs=None, nan_ok=False):
+    """pytest's; but its absolute 1e-12 does not decide of films, volumes and chances below it."""
+    if abs is None:
+        values = list(expected.values()) if isinstance(expected, dict) else expected
+        with suppress(TypeError, ValueError):
+            sizes = np.abs(np.asarray(values, dtype=float))
+            largest = float(np.max(sizes, where=np.isfinite(sizes), initial=0.0))
+            abs = min(largest * (1e-6 if rel is None else rel), 1e-12) or None
+    return APPROX(expected, rel=rel, abs=abs, nan_ok=nan_ok)
+
+
+pytest.approx = approx
 
 
 @pytest.fixture(scope="session", autouse=True)
