@@ -43,7 +43,8 @@ def approx(expected, rel=None, abs=None, nan_ok=False):
         with suppress(TypeError, ValueError):
             sizes = np.abs(np.asarray(values, dtype=float))
             largest = float(np.max(sizes, where=np.isfinite(sizes), initial=0.0))
-            abs = min(largest * (1e-6 if rel is None else rel), 1e-12) or None
+            rel = 1e-6 if rel is None else rel  # pytest leaves its own out beside an absolute one
+            abs = min(largest * rel, 1e-12) if largest else None
     return APPROX(expected, rel=rel, abs=abs, nan_ok=nan_ok)
 
 
