@@ -59,7 +59,7 @@ def test_nodes_are_means_over_the_surfaces(table):
     assert table.cof_hysteresis(p, v) == pytest.approx(np.mean(cof), rel=1e-4)
     assert table.cof_hysteresis(p, -v) == pytest.approx(-np.mean(cof), rel=1e-4)
     assert table.mean_gap(p, v) == pytest.approx(np.mean([c.mean_gap for c in contacts]), rel=1e-4)
-    assert table.flow_factor(p, v, "along") == pytest.approx(np.mean(flow), abs=1e-3)
+    assert table.flow_factor(p, v, "along") == pytest.approx(np.mean(flow), rel=1e-2)
     value = table.sourced_value("real_contact_fraction", p, v)
     assert value.uncertainty == pytest.approx(np.std(area, ddof=1), rel=1e-2)
 
@@ -168,7 +168,8 @@ def test_processes_give_the_same_numbers(table, tmp_path):
         surfaces(), RUBBER, PRESSURE, SPEED, cache=Cache("t", tmp_path), processes=2
     )
     for name in QUANTITIES:
-        np.testing.assert_allclose(again.values[name], table.values[name], rtol=1e-3, atol=1e-4)
+        near = 1e-4 * np.abs(table.values[name]).max()  # a gap is 1e-6 m, a share of contact 1
+        np.testing.assert_allclose(again.values[name], table.values[name], rtol=1e-3, atol=near)
     with pytest.raises(InputError, match="another process"):
         ContactTable.from_surfaces(
             surfaces(2),
