@@ -41,7 +41,7 @@ def approx(expected, rel=None, abs=None, nan_ok=False):
     if abs is None:
         values = list(expected.values()) if isinstance(expected, dict) else expected
         with suppress(TypeError, ValueError):
-            sizes = np.abs(np.asarray(values, dtype=float))
+            sizes = np.abs(np.asarray(values)).astype(float)  # of complex numbers too
             largest = float(np.max(sizes, where=np.isfinite(sizes), initial=0.0))
             rel = 1e-6 if rel is None else rel  # pytest leaves its own out beside an absolute one
             abs = min(largest * rel, 1e-12) if largest else None

@@ -58,7 +58,7 @@ def check_map(surface: HeightMap, where: str) -> None:
             "from its spectrum",
         )
     along, across = surface.spacings
-    if along != across:
+    if not math.isclose(along, across):
         raise InputError(
             Message(
                 "cells of {along} by {across}", along=Amount(along, "m"), across=Amount(across, "m")
